@@ -1,0 +1,211 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+/// \file
+/// Eight doubles computed at once. Library policies and kernels are written once as
+/// `template <class T>` for T = Real and T = Lanes; branches become select(mask, a, b).
+
+#include <cmath>
+#include <type_traits>
+
+#include <vadose/core/real.hpp>
+
+#ifdef __AVX512F__
+#include <immintrin.h>
+#endif
+
+#define VADOSE_INLINE __attribute__((always_inline)) inline
+
+namespace vadose {
+
+/// Number of points in a batch.
+inline constexpr int lane_count = 8;
+
+namespace detail {
+
+/// Doubles per native vector. Wider vectors than the target has make compilers spill everything.
+#if defined(__AVX512F__)
+inline constexpr int native_width = 8;
+#elif defined(__AVX__)
+inline constexpr int native_width = 4;
+#else
+inline constexpr int native_width = 2;
+#endif
+inline constexpr int native_parts = lane_count / native_width;
+
+typedef double NativeVector __attribute__((vector_size(8 * native_width)));
+typedef long long NativeMask __attribute__((vector_size(8 * native_width)));
+
+}  // namespace detail
+
+/// One truth value per lane.
+struct LaneMask {
+  detail::NativeMask part[detail::native_parts];
+
+  VADOSE_INLINE friend LaneMask operator&(LaneMask a, const LaneMask& b) noexcept {
+    for (int i = 0; i < detail::native_parts; ++i) a.part[i] = a.part[i] & b.part[i];
+    return a;
+  }
+  VADOSE_INLINE friend LaneMask operator|(LaneMask a, const LaneMask& b) noexcept {
+    for (int i = 0; i < detail::native_parts; ++i) a.part[i] = a.part[i] | b.part[i];
+    return a;
+  }
+  VADOSE_INLINE friend LaneMask operator!(LaneMask a) noexcept {
+    for (int i = 0; i < detail::native_parts; ++i) a.part[i] = ~a.part[i];
+    return a;
+  }
+  VADOSE_INLINE bool operator[](int lane) const noexcept {
+    return part[lane / detail::native_width][lane % detail::native_width] != 0;
+  }
+  VADOSE_INLINE friend bool any(const LaneMask& mask) noexcept {
+    detail::NativeMask joined = mask.part[0];
+    for (int i = 1; i < detail::native_parts; ++i) joined = joined | mask.part[i];
+    long long bits = 0;
+    for (int l = 0; l < detail::native_width; ++l) bits |= joined[l];
+    return bits != 0;
+  }
+  VADOSE_INLINE friend bool all(const LaneMask& mask) noexcept { return !any(!mask); }
+};
+
+/// Eight doubles; arithmetic is lane by lane. Never stored in long-lived data: points are plain
+/// arrays of double, loaded and stored batch by batch.
+struct Lanes {
+  detail::NativeVector part[detail::native_parts];
+
+  Lanes() = default;
+  VADOSE_INLINE Lanes(double s) noexcept {  // NOLINT(google-explicit-constructor): acts as a number
+    for (int i = 0; i < detail::native_parts; ++i) part[i] = s - detail::NativeVector{};
+  }
+
+  /// Reads eight doubles; p is 64-byte aligned.
+  VADOSE_INLINE static Lanes load(const double* p) noexcept {
+    Lanes r;
+    for (int i = 0; i < detail::native_parts; ++i)
+      r.part[i] = *reinterpret_cast<const detail::NativeVector*>(p + i * detail::native_width);
+    return r;
+  }
+  /// Writes eight doubles; p is 64-byte aligned.
+  VADOSE_INLINE void store(double* p) const noexcept {
+    for (int i = 0; i < detail::native_parts; ++i)
+      *reinterpret_cast<detail::NativeVector*>(p + i * detail::native_width) = part[i];
+  }
+
+  VADOSE_INLINE double operator[](int lane) const noexcept {
+    return part[lane / detail::native_width][lane % detail::native_width];
+  }
+  VADOSE_INLINE void set(int lane, double value) noexcept {
+    part[lane / detail::native_width][lane % detail::native_width] = value;
+  }
+
+  VADOSE_INLINE friend Lanes operator+(Lanes a, const Lanes& b) noexcept { return a += b; }
+  VADOSE_INLINE friend Lanes operator-(Lanes a, const Lanes& b) noexcept { return a -= b; }
+  VADOSE_INLINE friend Lanes operator*(Lanes a, const Lanes& b) noexcept { return a *= b; }
+  VADOSE_INLINE friend Lanes operator/(Lanes a, const Lanes& b) noexcept { return a /= b; }
+  VADOSE_INLINE Lanes& operator+=(const Lanes& b) noexcept {
+    for (int i = 0; i < detail::native_parts; ++i) part[i] = part[i] + b.part[i];
+    return *this;
+  }
+  VADOSE_INLINE Lanes& operator-=(const Lanes& b) noexcept {
+    for (int i = 0; i < detail::native_parts; ++i) part[i] = part[i] - b.part[i];
+    return *this;
+  }
+  VADOSE_INLINE Lanes& operator*=(const Lanes& b) noexcept {
+    for (int i = 0; i < detail::native_parts; ++i) part[i] = part[i] * b.part[i];
+    return *this;
+  }
+  VADOSE_INLINE Lanes& operator/=(const Lanes& b) noexcept {
+    for (int i = 0; i < detail::native_parts; ++i) part[i] = part[i] / b.part[i];
+    return *this;
+  }
+  VADOSE_INLINE Lanes operator-() const noexcept {
+    Lanes r;
+    for (int i = 0; i < detail::native_parts; ++i) r.part[i] = -part[i];
+    return r;
+  }
+
+  VADOSE_INLINE friend LaneMask operator<(const Lanes& a, const Lanes& b) noexcept {
+    LaneMask r;
+    for (int i = 0; i < detail::native_parts; ++i) r.part[i] = a.part[i] < b.part[i];
+    return r;
+  }
+  VADOSE_INLINE friend LaneMask operator<=(const Lanes& a, const Lanes& b) noexcept {
+    LaneMask r;
+    for (int i = 0; i < detail::native_parts; ++i) r.part[i] = a.part[i] <= b.part[i];
+    return r;
+  }
+  VADOSE_INLINE friend LaneMask operator>(const Lanes& a, const Lanes& b) noexcept { return b < a; }
+  VADOSE_INLINE friend LaneMask operator>=(const Lanes& a, const Lanes& b) noexcept {
+    return b <= a;
+  }
+  VADOSE_INLINE friend LaneMask operator==(const Lanes& a, const Lanes& b) noexcept {
+    LaneMask r;
+    for (int i = 0; i < detail::native_parts; ++i) r.part[i] = a.part[i] == b.part[i];
+    return r;
+  }
+
+  VADOSE_INLINE friend Lanes select(const LaneMask& mask, const Lanes& a, const Lanes& b) noexcept {
+    Lanes r;
+    for (int i = 0; i < detail::native_parts; ++i)
+      r.part[i] = mask.part[i] ? a.part[i] : b.part[i];
+    return r;
+  }
+  VADOSE_INLINE friend Lanes min(const Lanes& a, const Lanes& b) noexcept {
+    return select(b < a, b, a);
+  }
+  VADOSE_INLINE friend Lanes max(const Lanes& a, const Lanes& b) noexcept {
+    return select(a < b, b, a);
+  }
+  VADOSE_INLINE friend Lanes abs(const Lanes& a) noexcept { return select(a < Lanes(0.0), -a, a); }
+  VADOSE_INLINE friend Lanes sqrt(Lanes a) noexcept {
+#if defined(__AVX512F__)
+    a.part[0] = static_cast<detail::NativeVector>(_mm512_sqrt_pd(static_cast<__m512d>(a.part[0])));
+#else
+    for (int i = 0; i < detail::native_parts; ++i)
+      for (int l = 0; l < detail::native_width; ++l) a.part[i][l] = __builtin_sqrt(a.part[i][l]);
+#endif
+    return a;
+  }
+  /// Largest integer not above a; |a| < 2^51.
+  VADOSE_INLINE friend Lanes floor(const Lanes& a) noexcept {
+    constexpr double big = 6755399441055744.0;  // 1.5 * 2^52: adding it rounds to an integer
+    Lanes r;
+    for (int i = 0; i < detail::native_parts; ++i) {
+      const detail::NativeVector rounded = (a.part[i] + big) - big;
+      r.part[i] = rounded > a.part[i] ? rounded - 1.0 : rounded;
+    }
+    return r;
+  }
+
+  VADOSE_INLINE friend double sum(const Lanes& a) noexcept {
+    double s = 0;
+    for (int l = 0; l < lane_count; ++l) s += a[l];
+    return s;
+  }
+  VADOSE_INLINE friend double max_lane(const Lanes& a) noexcept {
+    double m = a[0];
+    for (int l = 1; l < lane_count; ++l) m = a[l] > m ? a[l] : m;
+    return m;
+  }
+  VADOSE_INLINE friend double min_lane(const Lanes& a) noexcept {
+    double m = a[0];
+    for (int l = 1; l < lane_count; ++l) m = a[l] < m ? a[l] : m;
+    return m;
+  }
+};
+
+// Scalar twins, so that `template <class T>` code reads the same for T = Real.
+VADOSE_INLINE double select(bool mask, double a, double b) noexcept { return mask ? a : b; }
+VADOSE_INLINE bool any(bool mask) noexcept { return mask; }
+VADOSE_INLINE bool all(bool mask) noexcept { return mask; }
+VADOSE_INLINE double min(double a, double b) noexcept { return b < a ? b : a; }
+VADOSE_INLINE double max(double a, double b) noexcept { return a < b ? b : a; }
+VADOSE_INLINE double abs(double a) noexcept { return std::fabs(a); }
+VADOSE_INLINE double sqrt(double a) noexcept { return __builtin_sqrt(a); }
+VADOSE_INLINE double floor(double a) noexcept { return std::floor(a); }
+VADOSE_INLINE double sum(double a) noexcept { return a; }
+
+/// T is Real or Lanes.
+template <class T>
+concept Numeric = std::is_same_v<T, Real> || std::is_same_v<T, Lanes>;
+
+}  // namespace vadose
