@@ -27,7 +27,9 @@ enum class Status : unsigned char {
 };
 
 /// The worse of two outcomes.
-constexpr Status operator|(Status a, Status b) noexcept { return a == Status::ok ? b : a; }
+constexpr Status operator|(Status a, Status b) noexcept {
+  return a == Status::ok ? b : a;
+}
 
 /// Checks of set-up values.
 namespace check {

@@ -5,6 +5,7 @@
 /// Eight doubles computed at once. Library policies and kernels are written once as
 /// `template <class T>` for T = Real and T = Lanes; branches become select(mask, a, b).
 
+#include <algorithm>
 #include <cmath>
 #include <type_traits>
 
@@ -145,8 +146,7 @@ struct Lanes {
 
   VADOSE_INLINE friend Lanes select(const LaneMask& mask, const Lanes& a, const Lanes& b) noexcept {
     Lanes r;
-    for (int i = 0; i < detail::native_parts; ++i)
-      r.part[i] = mask.part[i] ? a.part[i] : b.part[i];
+    for (int i = 0; i < detail::native_parts; ++i) r.part[i] = mask.part[i] ? a.part[i] : b.part[i];
     return r;
   }
   VADOSE_INLINE friend Lanes min(const Lanes& a, const Lanes& b) noexcept {
@@ -194,15 +194,21 @@ struct Lanes {
 };
 
 // Scalar twins, so that `template <class T>` code reads the same for T = Real.
-VADOSE_INLINE double select(bool mask, double a, double b) noexcept { return mask ? a : b; }
-VADOSE_INLINE bool any(bool mask) noexcept { return mask; }
-VADOSE_INLINE bool all(bool mask) noexcept { return mask; }
-VADOSE_INLINE double min(double a, double b) noexcept { return b < a ? b : a; }
-VADOSE_INLINE double max(double a, double b) noexcept { return a < b ? b : a; }
-VADOSE_INLINE double abs(double a) noexcept { return std::fabs(a); }
-VADOSE_INLINE double sqrt(double a) noexcept { return __builtin_sqrt(a); }
-VADOSE_INLINE double floor(double a) noexcept { return std::floor(a); }
-VADOSE_INLINE double sum(double a) noexcept { return a; }
+using std::abs;
+using std::floor;
+using std::max;
+using std::min;
+using std::sqrt;
+/// mask ? a : b, also lane by lane.
+VADOSE_INLINE double select(bool mask, double a, double b) noexcept {
+  return mask ? a : b;
+}
+VADOSE_INLINE bool any(bool mask) noexcept {
+  return mask;
+}
+VADOSE_INLINE bool all(bool mask) noexcept {
+  return mask;
+}
 
 /// T is Real or Lanes.
 template <class T>

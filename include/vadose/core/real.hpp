@@ -11,7 +11,8 @@
 #include <numbers>
 
 #ifdef __FAST_MATH__
-#error "vadose: -ffast-math breaks NaN tests and floor(); use -O3 -fno-math-errno -fno-trapping-math instead"
+#error \
+    "vadose: -ffast-math breaks NaN tests and floor(); use -O3 -fno-math-errno -fno-trapping-math instead"
 #endif
 
 namespace vadose {
@@ -34,7 +35,9 @@ constexpr bool is_finite(Real x) noexcept {
 }
 
 /// Angle in radians from degrees.
-constexpr Real degrees(Real angle) noexcept { return angle * (std::numbers::pi / 180.0); }
+constexpr Real degrees(Real angle) noexcept {
+  return angle * (std::numbers::pi / 180.0);
+}
 
 /// Integer power x^N of a scalar or of lanes.
 template <int N, class T>
