@@ -158,7 +158,8 @@ struct Lanes {
   VADOSE_INLINE friend Lanes abs(const Lanes& a) noexcept { return select(a < Lanes(0.0), -a, a); }
   VADOSE_INLINE friend Lanes sqrt(Lanes a) noexcept {
 #if defined(__AVX512F__)
-    a.part[0] = static_cast<detail::NativeVector>(_mm512_sqrt_pd(static_cast<__m512d>(a.part[0])));
+    a.part[0] = static_cast<detail::NativeVector>(
+        _mm512_maskz_sqrt_pd(0xff, static_cast<__m512d>(a.part[0])));
 #else
     for (int i = 0; i < detail::native_parts; ++i)
       for (int l = 0; l < detail::native_width; ++l) a.part[i][l] = __builtin_sqrt(a.part[i][l]);
