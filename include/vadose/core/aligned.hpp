@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstddef>
+#include <memory>
+#include <new>
+#include <vector>
+
+namespace vadose {
+
+/// Allocator of storage that starts on a cache line, so that batches and records load aligned.
+template <class T>
+struct CacheLineAllocator {
+  using value_type = T;
+  CacheLineAllocator() = default;
+  template <class U>
+  CacheLineAllocator(const CacheLineAllocator<U>&) noexcept {}  // NOLINT: converting by design
+  T* allocate(std::size_t n) {
+    return static_cast<T*>(::operator new (n * sizeof(T), std::align_val_t{64}));
+  }
+  void deallocate(T* p, std::size_t) noexcept { ::operator delete (p, std::align_val_t{64}); }
+  friend bool operator==(const CacheLineAllocator&, const CacheLineAllocator&) { return true; }
+};
+
+/// std::vector whose storage starts on a cache line.
+template <class T>
+using AlignedVector = std::vector<T, CacheLineAllocator<T>>;
+
+/// Eight numbers of one node or cell in one cache line.
+struct alignas(64) Record {
+  double value[8] = {};
+  double& operator[](int i) noexcept { return value[i]; }
+  double operator[](int i) const noexcept { return value[i]; }
+};
+
+}  // namespace vadose

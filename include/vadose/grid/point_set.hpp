@@ -1,0 +1,228 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+/// \file
+/// Storage of one set of points: batches of eight, sorted by grid block.
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include <vadose/core/aligned.hpp>
+#include <vadose/core/field.hpp>
+#include <vadose/core/lanes.hpp>
+#include <vadose/grid/block_grid.hpp>
+
+namespace vadose {
+
+/// Batches of one block: [begin, end).
+struct BatchRange {
+  int slot = 0;           ///< the block
+  std::size_t begin = 0;  ///< first batch
+  std::size_t end = 0;    ///< one past the last batch
+};
+
+/// One set of points (solid or liquid). A batch holds eight points, one cache line per field
+/// component; all points of a batch lie in one block (within half a cell) and belong to one
+/// group (material, or kind of water). Unused lanes have id -1 and no mass or volume.
+template <int Dim, class Fields>
+class PointSet {
+ public:
+  using fields = Fields;
+  static constexpr int stride = Fields::total * lane_count;  ///< doubles per batch
+  static constexpr int bytes_per_point = Fields::total * 8;
+
+  std::size_t batches() const noexcept { return group_.size(); }         ///< number of batches
+  std::size_t size() const noexcept { return size_; }                    ///< points that exist
+  int group(std::size_t batch) const noexcept { return group_[batch]; }  ///< group of a batch
+  /// Ranges of batches by block, in the order of layers.
+  const std::vector<BatchRange>& blocks() const noexcept { return blocks_; }
+  /// First entry of blocks() of each layer; one more entry than layers.
+  const std::vector<std::size_t>& layers() const noexcept { return layers_; }
+  /// Layers that hold points, as block coordinates along the slab axis.
+  const std::vector<int>& layer_coordinates() const noexcept { return layer_coordinates_; }
+
+  /// The eight values of a component of a field.
+  template <class Tag>
+  double* at(Tag, std::size_t batch, int component = 0) noexcept {
+    return data_.data() + batch * stride +
+           static_cast<std::size_t>(Fields::template offset<Tag>() + component) * lane_count;
+  }
+  template <class Tag>
+  const double* at(Tag, std::size_t batch, int component = 0) const noexcept {
+    return data_.data() + batch * stride +
+           static_cast<std::size_t>(Fields::template offset<Tag>() + component) * lane_count;
+  }
+  template <class Tag>
+  VADOSE_INLINE Lanes load(Tag tag, std::size_t batch, int component = 0) const noexcept {
+    return Lanes::load(at(tag, batch, component));
+  }
+  template <class Tag>
+  VADOSE_INLINE void store(Tag tag, std::size_t batch, int component, const Lanes& v) noexcept {
+    v.store(at(tag, batch, component));
+  }
+  template <class Tag>
+  VADOSE_INLINE void store(Tag tag, std::size_t batch, const Lanes& v) noexcept {
+    v.store(at(tag, batch, 0));
+  }
+  /// Asks the cache for a batch that will be needed soon.
+  void prefetch(std::size_t batch) const noexcept {
+    if (batch >= batches()) return;
+    const double* p = data_.data() + batch * stride;
+    for (int f = 0; f < Fields::total; ++f) __builtin_prefetch(p + f * lane_count, 0, 3);
+  }
+
+  /// Calls f(batch, lane) for every point that exists.
+  template <class F>
+  void for_each(F&& f) const {
+    for (std::size_t b = 0; b < batches(); ++b)
+      for (int l = 0; l < lane_count; ++l)
+        if (at(field::id, b)[l] >= 0) f(b, l);
+  }
+
+  /// Adds a point; it takes part from the next sort on. values: all components in field order.
+  void append(std::span<const double> values, int group) {
+    new_values_.insert(new_values_.end(), values.begin(), values.end());
+    new_groups_.push_back(static_cast<std::uint8_t>(group));
+  }
+  /// Whether points wait for the next sort.
+  bool has_new() const noexcept { return !new_groups_.empty(); }
+  /// Removes a point; its lane is free until the next sort.
+  void remove(std::size_t batch, int lane) noexcept {
+    at(field::id, batch)[lane] = -1;
+    at(field::mass, batch)[lane] = 0;
+    at(field::volume, batch)[lane] = 0;
+    --size_;
+  }
+
+  /// Marks in `occupied` (one entry per block number) the blocks that hold points.
+  void mark_blocks(const BlockGrid<Dim>& grid, std::vector<char>& occupied) const {
+    for_each_value([&](const double* p, int step, int) {
+      occupied[grid.block_number(cell_of(grid, p, step))] = 1;
+    });
+  }
+
+  /// Sorts by block, group and cell; new points join, removed ones vanish.
+  void sort(const BlockGrid<Dim>& grid, int groups) {
+    const std::vector<std::size_t> start = count(grid, groups);
+    AlignedVector<double> sorted(batch_total(start, groups, grid.slots()) *
+                                 static_cast<std::size_t>(stride));
+    place(grid, groups, start, sorted);
+    data_.swap(sorted);
+    new_values_.clear();
+    new_groups_.clear();
+    list_layers(grid);
+  }
+
+ private:
+  using B = Block<Dim>;
+
+  /// Calls f(first component of the point, distance between components, group) for all points.
+  template <class F>
+  void for_each_value(F&& f) const {
+    for_each([&](std::size_t b, int l) {
+      f(data_.data() + b * stride + static_cast<std::size_t>(l), lane_count, group_[b]);
+    });
+    for (std::size_t i = 0; i < new_groups_.size(); ++i)
+      f(new_values_.data() + i * Fields::total, 1, new_groups_[i]);
+  }
+  static Index<Dim> cell_of(const BlockGrid<Dim>& grid, const double* p, int step) noexcept {
+    constexpr int x = Fields::template offset<field::Position>();
+    Index<Dim> c;
+    for (int d = 0; d < Dim; ++d) c[d] = grid.cell_of(p[(x + d) * step], d);
+    return c;
+  }
+  static std::size_t key(const BlockGrid<Dim>& grid, const double* p, int step, int group,
+                         int groups) noexcept {
+    const Index<Dim> c = cell_of(grid, p, step);
+    Index<Dim> local;
+    for (int d = 0; d < Dim; ++d) local[d] = c[d] % B::edge;
+    const int slot = grid.slot(grid.block_number(c));
+    return static_cast<std::size_t>((slot * groups + group) * B::cells +
+                                    BlockGrid<Dim>::local_index(local));
+  }
+
+  /// Number of points before each key (block, group, cell), and in all.
+  std::vector<std::size_t> count(const BlockGrid<Dim>& grid, int groups) const {
+    std::vector<std::size_t> start(static_cast<std::size_t>(grid.slots() * groups * B::cells) + 1,
+                                   0);
+    for_each_value([&](const double* p, int step, int group) {
+      ++start[key(grid, p, step, group, groups) + 1];
+    });
+    for (std::size_t k = 1; k < start.size(); ++k) start[k] += start[k - 1];
+    return start;
+  }
+  static std::size_t batches_of(const std::vector<std::size_t>& start, std::size_t range) {
+    return (start[(range + 1) * B::cells] - start[range * B::cells] + lane_count - 1) / lane_count;
+  }
+  static std::size_t batch_total(const std::vector<std::size_t>& start, int groups, int slots) {
+    std::size_t total = 0;
+    for (std::size_t r = 0; r < static_cast<std::size_t>(slots * groups); ++r)
+      total += batches_of(start, r);
+    return total;
+  }
+
+  void place(const BlockGrid<Dim>& grid, int groups, const std::vector<std::size_t>& start,
+             AlignedVector<double>& sorted) {
+    const std::size_t ranges = static_cast<std::size_t>(grid.slots() * groups);
+    std::vector<std::size_t> first_batch(ranges + 1, 0);
+    for (std::size_t r = 0; r < ranges; ++r)
+      first_batch[r + 1] = first_batch[r] + batches_of(start, r);
+    std::vector<std::size_t> next = start;
+    for_each_value([&](const double* p, int step, int group) {
+      const std::size_t k = key(grid, p, step, group, groups);
+      const std::size_t range = k / B::cells;
+      const std::size_t n = next[k]++ - start[range * B::cells];
+      double* to = sorted.data() + (first_batch[range] + n / lane_count) * stride + n % lane_count;
+      for (int c = 0; c < Fields::total; ++c) to[c * lane_count] = p[c * step];
+    });
+    size_ = start.back();
+    group_.assign(first_batch[ranges], 0);
+    blocks_.clear();
+    for (int s = 0; s < grid.slots(); ++s) {
+      const std::size_t r0 = static_cast<std::size_t>(s * groups);
+      const std::size_t r1 = r0 + static_cast<std::size_t>(groups);
+      for (std::size_t r = r0; r < r1; ++r) {
+        const std::size_t n = start[(r + 1) * B::cells] - start[r * B::cells];
+        for (std::size_t b = first_batch[r]; b < first_batch[r + 1]; ++b)
+          group_[b] = static_cast<std::uint8_t>(r - r0);
+        if (n > 0) pad(sorted, first_batch[r + 1] - 1, static_cast<int>((n - 1) % lane_count) + 1);
+      }
+      if (first_batch[r1] > first_batch[r0])
+        blocks_.push_back({s, first_batch[r0], first_batch[r1]});
+    }
+  }
+  /// Fills the lanes from `used` on: copies of the first point without id, mass and volume.
+  static void pad(AlignedVector<double>& data, std::size_t batch, int used) noexcept {
+    double* p = data.data() + batch * stride;
+    for (int l = used; l < lane_count; ++l) {
+      for (int c = 0; c < Fields::total; ++c) p[c * lane_count + l] = p[c * lane_count];
+      p[Fields::template offset<field::Id>() * lane_count + l] = -1;
+      p[Fields::template offset<field::Mass>() * lane_count + l] = 0;
+      p[Fields::template offset<field::Volume>() * lane_count + l] = 0;
+    }
+  }
+  void list_layers(const BlockGrid<Dim>& grid) {
+    layers_.clear();
+    layer_coordinates_.clear();
+    for (std::size_t i = 0; i < blocks_.size(); ++i) {
+      const int layer = grid.block(blocks_[i].slot)[grid.slab_axis()];
+      if (layer_coordinates_.empty() || layer_coordinates_.back() != layer) {
+        layer_coordinates_.push_back(layer);
+        layers_.push_back(i);
+      }
+    }
+    layers_.push_back(blocks_.size());
+  }
+
+  AlignedVector<double> data_;
+  std::vector<std::uint8_t> group_;
+  std::vector<BatchRange> blocks_;
+  std::vector<std::size_t> layers_{0};
+  std::vector<int> layer_coordinates_;
+  std::size_t size_ = 0;
+  std::vector<double> new_values_;
+  std::vector<std::uint8_t> new_groups_;
+};
+
+}  // namespace vadose
