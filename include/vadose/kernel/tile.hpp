@@ -1,0 +1,202 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+/// \file
+/// The nodes around one block in a contiguous buffer, and the loop over blocks that adds tiles
+/// up in the same order for any number of threads.
+
+#include <vadose/core/aligned.hpp>
+#include <vadose/core/parallel.hpp>
+#include <vadose/grid/point_set.hpp>
+#include <vadose/kernel/stencil.hpp>
+
+namespace vadose::kernel {
+
+/// Records of the nodes (or cells) one below a block to two above.
+template <int Dim>
+struct Tile {
+  Record record[Block<Dim>::tile_size];
+
+  /// Reads the records of a slot.
+  void read(const BlockGrid<Dim>& grid, int slot, const AlignedVector<Record>& from) noexcept {
+    const std::int32_t* entry = grid.tile(slot);
+    for (int i = 0; i < Block<Dim>::tile_size; ++i)
+      record[i] = from[static_cast<std::size_t>(entry[i])];
+  }
+  /// Adds what the tile gathered to the records of a slot and clears it.
+  void add_to(const BlockGrid<Dim>& grid, int slot, AlignedVector<Record>& to) noexcept {
+    const std::int32_t* entry = grid.tile(slot);
+    const std::int32_t outside = grid.outside();
+    for (int i = 0; i < Block<Dim>::tile_size; ++i) {
+      if (entry[i] != outside) {
+        Record& r = to[static_cast<std::size_t>(entry[i])];
+        (Lanes::load(r.value) + Lanes::load(record[i].value)).store(r.value);
+      }
+      Lanes(0.0).store(record[i].value);
+    }
+  }
+};
+
+/// Calls f(block range, thread) for all blocks of points; blocks may be worked on together.
+template <class Points, class F>
+void for_blocks(const Points& points, int threads, F&& f) {
+  parallel_for(points.blocks().size(), threads,
+               [&](std::size_t i, int thread) { f(points.blocks()[i], thread); });
+}
+
+/// Calls f(block range, thread) for all blocks, so that two blocks whose tiles share a node are
+/// never worked on together and always in the same order: layers of even, then of odd number.
+template <class Points, class F>
+void for_blocks_adding(const Points& points, int threads, F&& f) {
+  const auto& coordinates = points.layer_coordinates();
+  for (int parity = 0; parity < 2; ++parity)
+    parallel_for(coordinates.size(), threads, [&](std::size_t layer, int thread) {
+      if ((coordinates[layer] & 1) != parity) return;
+      for (std::size_t i = points.layers()[layer]; i < points.layers()[layer + 1]; ++i)
+        f(points.blocks()[i], thread);
+    });
+}
+
+/// Adds to a tile, for each of eight points, value * N + sum_e slope_part_e * dN/dx_e.
+/// value: eight numbers per point; slope parts: numbers of record lanes 4 .. 7 that go with the
+/// slope along each axis (lanes 0 .. 3 are ignored). With Moments, `moment[e]` (lanes 0 .. 3)
+/// times the distance of the node from the point's first node, in cells, is added to value.
+template <bool Slopes, bool Moments, class Shape, int Dim>
+struct Scatter {
+  Lanes value[lane_count];
+  Lanes slope[Slopes ? Dim : 1][lane_count];
+  Lanes moment[Moments ? Dim : 1][lane_count];
+
+  VADOSE_INLINE void add(const Stencil<Shape, Dim>& s, Record* tile) const noexcept {
+    for (int l = 0; l < lane_count; ++l) add_point(s, l, tile + s.offset[l]);
+  }
+
+ private:
+  static constexpr int n = Shape::support;
+
+  VADOSE_INLINE void add_point(const Stencil<Shape, Dim>& s, int l, Record* first) const noexcept {
+    Lanes split[n], plain[n];
+    for (int i = 0; i < n; ++i) {
+      const double w = s.weight[0][i][l];
+      plain[i] = Lanes(w);
+      if constexpr (Slopes) split[i] = halves(w, s.slope[0][i][l]);
+    }
+    if constexpr (Dim == 1) {
+      add_row(value[l], Lanes(1.0), Lanes(0.0), l, split, plain, first);
+    } else if constexpr (Dim == 2) {
+      for (int j = 0; j < n; ++j) {
+        const Lanes wy(s.weight[1][j][l]);
+        Lanes across(0.0);
+        if constexpr (Slopes) across = slope[1][l] * Lanes(s.slope[1][j][l]);
+        Lanes v = value[l];
+        if constexpr (Moments) v += moment[1][l] * Lanes(static_cast<double>(j));
+        add_row(v, wy, across, l, split, plain, first + j * BlockGrid<Dim>::tile_stride(1));
+      }
+    } else {
+      for (int k = 0; k < n; ++k) {
+        const double wz = s.weight[2][k][l];
+        for (int j = 0; j < n; ++j) {
+          const double wy = s.weight[1][j][l];
+          Lanes across(0.0);
+          if constexpr (Slopes)
+            across = slope[1][l] * Lanes(s.slope[1][j][l] * wz) +
+                     slope[2][l] * Lanes(wy * s.slope[2][k][l]);
+          Lanes v = value[l];
+          if constexpr (Moments)
+            v += moment[1][l] * Lanes(static_cast<double>(j)) +
+                 moment[2][l] * Lanes(static_cast<double>(k));
+          add_row(v, Lanes(wy * wz), across, l, split, plain,
+                  first + j * BlockGrid<Dim>::tile_stride(1) + k * BlockGrid<Dim>::tile_stride(2));
+        }
+      }
+    }
+  }
+
+  /// One row of nodes along axis 0: two multiply-adds per node. Lanes 0 .. 3 take value * N from
+  /// `a`; lanes 4 .. 7 take slope_0 dN/dx_0 from `a` and everything else from `b`.
+  VADOSE_INLINE void add_row(const Lanes& v, const Lanes& w, const Lanes& across, int l,
+                             const Lanes (&split)[n], const Lanes (&plain)[n],
+                             Record* row) const noexcept {
+    const Lanes vw = v * w;
+    Lanes a = vw, b(0.0);
+    if constexpr (Slopes) {
+      a = low_high(vw, slope[0][l] * w);
+      b = low_high(Lanes(0.0), vw + across);
+    }
+    for (int i = 0; i < n; ++i) {
+      Lanes r = Lanes::load(row[i].value);
+      if constexpr (Slopes) {
+        r += a * split[i];
+        r += b * plain[i];
+      } else {
+        r += a * plain[i];
+      }
+      if constexpr (Moments) r += moment[0][l] * w * (plain[i] * Lanes(static_cast<double>(i)));
+      r.store(row[i].value);
+    }
+  }
+  /// Lanes 0 .. 3 of the first, 4 .. 7 of the second.
+  VADOSE_INLINE static Lanes low_high(const Lanes& low, const Lanes& high) noexcept {
+    return select(halves(0.0, 1.0) < Lanes(0.5), low, high);
+  }
+};
+
+/// Sums over the nodes of eight points: sum N r (all lanes) and sum dN/dx_e r (lanes 0 .. 3).
+template <bool Slopes, class Shape, int Dim>
+struct Gather {
+  Lanes value[lane_count];
+  Lanes slope[Slopes ? Dim : 1][lane_count];
+
+  VADOSE_INLINE void sum(const Stencil<Shape, Dim>& s, const Record* tile) noexcept {
+    for (int l = 0; l < lane_count; ++l) sum_point(s, l, tile + s.offset[l]);
+  }
+
+  /// Turns the results into one Lanes per record lane: value[i] holds lane i of the eight points.
+  VADOSE_INLINE void by_field() noexcept {
+    transpose(value);
+    if constexpr (Slopes)
+      for (int e = 0; e < Dim; ++e) transpose(slope[e]);
+  }
+
+ private:
+  static constexpr int n = Shape::support;
+
+  VADOSE_INLINE void sum_point(const Stencil<Shape, Dim>& s, int l, const Record* first) noexcept {
+    Lanes total(0.0), along[Slopes ? Dim : 1];
+    for (auto& a : along) a = Lanes(0.0);
+    for (int k = 0; k < (Dim == 3 ? n : 1); ++k) {
+      for (int j = 0; j < (Dim >= 2 ? n : 1); ++j) {
+        const Record* row = first;
+        double w = 1, g1 = 0, g2 = 0;
+        if constexpr (Dim >= 2) {
+          row += j * BlockGrid<Dim>::tile_stride(1);
+          w = s.weight[1][j][l];
+          g1 = s.slope[1][j][l];
+        }
+        if constexpr (Dim == 3) {
+          row += k * BlockGrid<Dim>::tile_stride(2);
+          g2 = w * s.slope[2][k][l];
+          w *= s.weight[2][k][l];
+          g1 *= s.weight[2][k][l];
+        }
+        Lanes r(0.0), d(0.0);
+        for (int i = 0; i < n; ++i) {
+          const Lanes node = Lanes::load(row[i].value);
+          r += node * Lanes(s.weight[0][i][l]);
+          if constexpr (Slopes) d += node * Lanes(s.slope[0][i][l]);
+        }
+        total += r * Lanes(w);
+        if constexpr (Slopes) {
+          along[0] += d * Lanes(w);
+          if constexpr (Dim >= 2) along[1] += r * Lanes(g1);
+          if constexpr (Dim == 3) along[2] += r * Lanes(g2);
+        }
+      }
+    }
+    value[l] = total;
+    if constexpr (Slopes)
+      for (int e = 0; e < Dim; ++e) slope[e][l] = along[e];
+  }
+};
+
+}  // namespace vadose::kernel
