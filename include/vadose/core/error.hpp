@@ -51,6 +51,18 @@ inline std::string text(Real value) {
   throw SetupError(message);
 }
 
+namespace detail {
+/// Text of an interval. Grown by appending: g++ 12 warns falsely about "(" + string.
+inline std::string interval(char open, Real low, Real high, char close) {
+  std::string range(1, open);
+  range += text(low);
+  range += ", ";
+  range += text(high);
+  range += close;
+  return range;
+}
+}  // namespace detail
+
 /// value > 0 and finite.
 inline void positive(std::string_view name, Real value, std::string_view unit) {
   if (!is_finite(value) || !(value > 0)) fail(name, value, "(0, inf)", unit);
@@ -69,13 +81,13 @@ inline void finite(std::string_view name, Real value, std::string_view unit) {
 /// low < value < high (open interval).
 inline void inside(std::string_view name, Real value, Real low, Real high, std::string_view unit) {
   if (!is_finite(value) || !(value > low && value < high))
-    fail(name, value, "(" + text(low) + ", " + text(high) + ")", unit);
+    fail(name, value, detail::interval('(', low, high, ')'), unit);
 }
 
 /// low <= value <= high (closed interval).
 inline void within(std::string_view name, Real value, Real low, Real high, std::string_view unit) {
   if (!is_finite(value) || !(value >= low && value <= high))
-    fail(name, value, "[" + text(low) + ", " + text(high) + "]", unit);
+    fail(name, value, detail::interval('[', low, high, ']'), unit);
 }
 
 /// Runs f; a SetupError from it is thrown again with " in <context>" appended.

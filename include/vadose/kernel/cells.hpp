@@ -1,0 +1,331 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+/// \file
+/// Step 1 of DESIGN: from liquid points to cells: water, pores, fill, kind, pressure unknowns.
+
+#include <vadose/kernel/batch.hpp>
+
+namespace vadose::kernel {
+
+/// Sets all records to zero.
+inline void clear(AlignedVector<Record>& records, int threads) {
+  constexpr std::size_t chunk = 4096;
+  parallel_for((records.size() + chunk - 1) / chunk, threads, [&](std::size_t c, int) {
+    const std::size_t end = std::min(records.size(), (c + 1) * chunk);
+    for (std::size_t i = c * chunk; i < end; ++i) Lanes(0.0).store(records[i].value);
+  });
+}
+
+/// Calls f(entry, local cell coordinates, slot) for every cell of every existing block.
+template <int Dim, class F>
+void for_cells(const BlockGrid<Dim>& grid, int threads, F&& f) {
+  parallel_for(static_cast<std::size_t>(grid.slots()), threads, [&](std::size_t s, int thread) {
+    const int slot = static_cast<int>(s);
+    std::int32_t entry = slot * Block<Dim>::cells;
+    for_cube<Dim>(0, Block<Dim>::edge, [&](const Index<Dim>& i) { f(entry++, i, slot, thread); });
+  });
+}
+
+/// Adds one record per point to the cell the point is in.
+template <int Dim>
+VADOSE_INLINE void add_to_cells(const CellFinder<Dim>& cells, Lanes (&record)[lane_count],
+                                Tile<Dim>& tile) noexcept {
+  transpose(record);
+  for (int l = 0; l < lane_count; ++l) {
+    double* r = tile.record[cells.index[l]].value;
+    (Lanes::load(r) + record[l]).store(r);
+  }
+}
+
+/// Sums of one batch of pore water: V, m, n V, n V p, n V x.
+template <class M>
+VADOSE_INLINE void pore_record(const State<M>& state, std::size_t b,
+                               const Lanes (&x)[State<M>::dim],
+                               Lanes (&record)[lane_count]) noexcept {
+  const auto& points = state.liquid;
+  const Lanes volume = points.load(field::volume, b);
+  const Lanes pores = volume * points.load(field::porosity, b);
+  for (auto& r : record) r = Lanes(0.0);
+  record[lane::bulk_volume] = volume;
+  record[lane::water] = points.load(field::mass, b);
+  record[lane::pore_volume] = pores;
+  record[lane::pore_pressure] = pores * points.load(field::liquid_pressure, b);
+  for (int d = 0; d < State<M>::dim; ++d) record[lane::pore_position + d] = pores * x[d];
+}
+
+/// Sums of one batch of free water: V, m, V p, V x.
+template <class M>
+VADOSE_INLINE void free_record(const State<M>& state, std::size_t b,
+                               const Lanes (&x)[State<M>::dim],
+                               Lanes (&record)[lane_count]) noexcept {
+  const auto& points = state.liquid;
+  const Lanes volume = points.load(field::volume, b);
+  for (auto& r : record) r = Lanes(0.0);
+  record[lane::free_volume] = volume;
+  record[lane::free_water] = points.load(field::mass, b);
+  record[lane::free_pressure] = volume * points.load(field::liquid_pressure, b);
+  for (int d = 0; d < State<M>::dim; ++d) record[lane::free_position + d] = volume * x[d];
+}
+
+/// Sums the water points of every cell.
+template <class M>
+void sum_water(State<M>& state) {
+  constexpr int dim = State<M>::dim;
+  const int threads = state.options.threads;
+  clear(state.nodes.pore, threads);
+  clear(state.nodes.free, threads);
+  for_blocks_adding(state.liquid, threads, [&](const BatchRange& range, int thread) {
+    Tile<dim>& pore = state.tile(thread, 0);
+    Tile<dim>& free = state.tile(thread, 1);
+    const TileFrame<dim> frame = tile_frame(state.grid, range.slot);
+    bool any_pore = false, any_free = false;
+    for (std::size_t b = range.begin; b < range.end; ++b) {
+      state.liquid.prefetch(b + 2);
+      Lanes x[dim], record[lane_count];
+      load_positions(state.liquid, b, x);
+      CellFinder<dim> cells;
+      cells.find(frame, x);
+      if (state.liquid.group(b) == state.free_group()) {
+        free_record(state, b, x, record);
+        add_to_cells(cells, record, free);
+        any_free = true;
+      } else if constexpr (has_skeleton<M>) {
+        pore_record(state, b, x, record);
+        add_to_cells(cells, record, pore);
+        any_pore = true;
+      }
+    }
+    if (any_pore) pore.add_to(state.grid, range.slot, state.nodes.pore);
+    if (any_free) free.add_to(state.grid, range.slot, state.nodes.free);
+  });
+}
+
+/// Bulk volume of each material in every cell; only needed with more than one soil.
+template <class M>
+void sum_materials(State<M>& state) {
+  constexpr int dim = State<M>::dim;
+  clear(state.nodes.materials, state.options.threads);
+  for_blocks_adding(state.liquid, state.options.threads, [&](const BatchRange& range, int thread) {
+    Tile<dim>& tile = state.tile(thread);
+    const TileFrame<dim> frame = tile_frame(state.grid, range.slot);
+    for (std::size_t b = range.begin; b < range.end; ++b) {
+      const int group = state.liquid.group(b);
+      if (group == state.free_group()) continue;
+      Lanes x[dim], record[lane_count];
+      load_positions(state.liquid, b, x);
+      CellFinder<dim> cells;
+      cells.find(frame, x);
+      for (auto& r : record) r = Lanes(0.0);
+      record[group] = state.liquid.load(field::volume, b);
+      add_to_cells(cells, record, tile);
+    }
+    tile.add_to(state.grid, range.slot, state.nodes.materials);
+  });
+}
+
+/// What the cell rules need to know of a cell's surroundings.
+template <class M>
+struct CellView {
+  static constexpr int dim = State<M>::dim;
+
+  const State<M>& state;
+  const std::int32_t* tile;  ///< entries around the block
+  Index<dim> cell;           ///< coordinates in the grid
+  int at;                    ///< own position in the tile
+
+  CellView(const State<M>& s, const Index<dim>& local, int slot)
+      : state(s), tile(s.grid.tile(slot)), at(BlockGrid<dim>::tile_index(local)) {
+    const Index<dim> first = s.grid.first_cell(slot);
+    for (int d = 0; d < dim; ++d) cell[d] = first[d] + local[d];
+  }
+  /// Inside the box.
+  bool inside() const noexcept {
+    for (int d = 0; d < dim; ++d)
+      if (cell[d] >= state.grid.cells()[d]) return false;
+    return true;
+  }
+  /// Whether the neighbour one cell down (-1) or up (+1) an axis is inside the box.
+  bool has_neighbour(int axis, int step) const noexcept {
+    const int c = cell[axis] + step;
+    return c >= 0 && c < state.grid.cells()[axis];
+  }
+  std::int32_t entry() const noexcept { return tile[at]; }
+  std::int32_t neighbour(int axis, int step) const noexcept {
+    return tile[at + step * BlockGrid<dim>::tile_stride(axis)];
+  }
+  /// Centre of the cell along an axis [m].
+  Real centre(int axis) const noexcept {
+    return state.grid.origin()[axis] + (cell[axis] + 0.5) * state.grid.cell_size();
+  }
+  Real volume() const noexcept {
+    return state.cell_volume(State<M>::Kinematics::axisymmetric ? centre(0) : 1);
+  }
+};
+
+/// Water-bearing volume of a cell (bulk of soil, and free water) [m3].
+template <int Dim>
+Real wet_volume(const GridState<Dim>& nodes, std::int32_t e) noexcept {
+  const auto i = static_cast<std::size_t>(e);
+  return nodes.pore[i][lane::bulk_volume] + nodes.free[i][lane::free_volume];
+}
+
+/// Kind and fill of every cell. A cell is soil if soil fills more than half of it or it holds no
+/// free water.
+template <class M>
+void classify_cells(State<M>& state) {
+  auto& nodes = state.nodes;
+  for_cells(state.grid, state.options.threads,
+            [&](std::int32_t e, const Index<State<M>::dim>& local, int slot, int) {
+              const auto i = static_cast<std::size_t>(e);
+              auto& cell = nodes.cell[i];
+              cell.kind = CellKind::none;
+              cell.fill = 0;
+              const CellView<M> view(state, local, slot);
+              const Real soil = nodes.pore[i][lane::bulk_volume];
+              const Real free = nodes.free[i][lane::free_volume];
+              if (!view.inside() || soil + free <= 0) return;
+              cell.fill = (soil + free) / view.volume();
+              const bool is_soil = soil > 0 && (free <= 0 || soil > 0.5 * view.volume());
+              cell.kind = is_soil ? CellKind::soil : CellKind::free;
+            });
+}
+
+/// The neighbour a sliver (a surface cell less than half full) shares its pressure with: the face
+/// neighbour of the same kind, at least half full, in whose direction the fill grows most; -1 if
+/// the cell is no sliver or has none.
+template <class M>
+std::int32_t sliver_target(const CellView<M>& view) noexcept {
+  const auto& cells = view.state.nodes.cell;
+  const auto& own = cells[static_cast<std::size_t>(view.entry())];
+  if (own.fill >= 0.5) return -1;
+  std::int32_t target = -1;
+  Real best = 0;
+  for (int d = 0; d < State<M>::dim; ++d) {
+    Real fill[2] = {0, 0};
+    for (int side = 0; side < 2; ++side)
+      if (view.has_neighbour(d, 2 * side - 1))
+        fill[side] = min(1.0, cells[static_cast<std::size_t>(view.neighbour(d, 2 * side - 1))].fill);
+    for (int side = 0; side < 2; ++side) {
+      if (!view.has_neighbour(d, 2 * side - 1)) continue;
+      const std::int32_t n = view.neighbour(d, 2 * side - 1);
+      const auto& other = cells[static_cast<std::size_t>(n)];
+      if (other.kind != own.kind || other.fill < 0.5) continue;
+      // Ties go to the last axis: vertical.
+      const Real growth = fill[side] - fill[1 - side] + 1e-9 * (d + 1);
+      if (growth > best) {
+        best = growth;
+        target = n;
+      }
+    }
+  }
+  return target;
+}
+
+/// Which cell's pressure each cell uses.
+template <class M>
+void assign_pressure_cells(State<M>& state) {
+  for_cells(state.grid, state.options.threads,
+            [&](std::int32_t e, const Index<State<M>::dim>& local, int slot, int) {
+              const auto i = static_cast<std::size_t>(e);
+              state.nodes.dof[i] = -1;
+              if (state.nodes.cell[i].kind == CellKind::none) return;
+              const std::int32_t target = sliver_target(CellView<M>(state, local, slot));
+              state.nodes.dof[i] = target < 0 ? e : target;
+            });
+}
+
+/// Calls f(entry) for a cell itself and every sliver that shares its pressure.
+template <class M, class F>
+void for_members(const CellView<M>& view, F&& f) {
+  const std::int32_t e = view.entry();
+  f(e);
+  for (int d = 0; d < State<M>::dim; ++d)
+    for (int step = -1; step <= 1; step += 2) {
+      if (!view.has_neighbour(d, step)) continue;
+      const std::int32_t n = view.neighbour(d, step);
+      if (n != view.state.grid.outside() && view.state.nodes.dof[static_cast<std::size_t>(n)] == e)
+        f(n);
+    }
+}
+
+/// Material with the largest bulk volume in a record of materials.
+inline std::uint8_t largest(const Record& volumes, int count) noexcept {
+  int best = 0;
+  for (int i = 1; i < count; ++i)
+    if (volumes[i] > volumes[best]) best = i;
+  return static_cast<std::uint8_t>(best);
+}
+
+/// Sums, centroid and quadrature of the pressure unknown of one cell. A full cell is integrated at
+/// its centre; a cell at a free surface at the centroid of what fills it, so that a column at rest
+/// is in exact balance for any position of its surface.
+template <class M>
+void gather_cell(State<M>& state, const CellView<M>& view) {
+  constexpr int dim = State<M>::dim;
+  auto& nodes = state.nodes;
+  auto& cell = nodes.cell[static_cast<std::size_t>(view.entry())];
+  const bool soil = cell.kind == CellKind::soil;
+  Record pore, free, materials;
+  Real fill = 0, wet = 0;
+  bool at_air = false;
+  int members = 0;
+  for_members(view, [&](std::int32_t m) {
+    const auto i = static_cast<std::size_t>(m);
+    (Lanes::load(pore.value) + Lanes::load(nodes.pore[i].value)).store(pore.value);
+    (Lanes::load(free.value) + Lanes::load(nodes.free[i].value)).store(free.value);
+    if (state.soils.size() > 1)
+      (Lanes::load(materials.value) + Lanes::load(nodes.materials[i].value))
+          .store(materials.value);
+    wet += wet_volume(nodes, m);
+    fill += nodes.cell[i].fill;
+    ++members;
+  });
+  for (int d = 0; d < dim; ++d)
+    for (int step = -1; step <= 1; step += 2)
+      if (view.has_neighbour(d, step)) {
+        const std::int32_t n = view.neighbour(d, step);
+        const auto& other = nodes.cell[static_cast<std::size_t>(n)];
+        if (other.kind == CellKind::none ||
+            (members > 1 && nodes.dof[static_cast<std::size_t>(n)] == view.entry()))
+          at_air = true;
+      }
+  cell.at_air = at_air;
+  cell.material = state.soils.size() > 1 ? largest(materials, static_cast<int>(state.soils.size()))
+                                         : std::uint8_t{0};
+  cell.pore_volume = soil ? pore[lane::pore_volume] : 0;
+  cell.soil_share = pore[lane::bulk_volume] / wet;
+  cell.water = soil ? pore[lane::water] : free[lane::free_water];
+  cell.porosity = soil ? pore[lane::pore_volume] / pore[lane::bulk_volume] : 1;
+  const Real weight = soil ? pore[lane::pore_volume] : free[lane::free_volume];
+  const Record& sums = soil ? pore : free;
+  cell.pressure = sums[lane::pore_pressure] / weight;  // mean at the centroid: start value
+  for (int d = 0; d < dim; ++d) cell.centroid[d] = sums[lane::pore_position + d] / weight;
+  cell.gain = 0;
+  cell.limit = 1;
+
+  const bool full = members == 1 && !at_air;
+  cell.fill = full ? 1 : fill;
+  cell.quad_volume = full ? view.volume() : wet;
+  for (int d = 0; d < dim; ++d) {
+    const Real mixed = (pore[lane::bulk_volume] * (pore[lane::pore_volume] > 0
+                                                       ? pore[lane::pore_position + d] /
+                                                             pore[lane::pore_volume]
+                                                       : 0.0) +
+                        free[lane::free_position + d]) /
+                       wet;
+    cell.quad_point[d] = full ? view.centre(d) : mixed;
+  }
+}
+
+/// Gathers every cell that owns its pressure.
+template <class M>
+void gather_cells(State<M>& state) {
+  for_cells(state.grid, state.options.threads,
+            [&](std::int32_t e, const Index<State<M>::dim>& local, int slot, int) {
+              if (state.nodes.dof[static_cast<std::size_t>(e)] != e) return;
+              gather_cell(state, CellView<M>(state, local, slot));
+            });
+}
+
+}  // namespace vadose::kernel

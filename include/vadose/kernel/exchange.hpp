@@ -1,0 +1,220 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+/// \file
+/// Steps 4 and 8: water fluxes through faces and what each cell gains. Each flux leaves one cell
+/// and enters another (or a counted boundary), so water is conserved to round-off.
+
+#include <vadose/kernel/momentum.hpp>
+
+namespace vadose::kernel {
+
+/// Volume rate of a cell: div v^s of soil, div q of free water, at its quadrature point.
+template <class M>
+void find_rates(State<M>& state) {
+  constexpr int dim = State<M>::dim;
+  for_cells(state.grid, state.options.threads,
+            [&](std::int32_t e, const Index<dim>& local, int slot, int) {
+              auto& nodes = state.nodes;
+              if (nodes.dof[static_cast<std::size_t>(e)] != e) return;
+              const CellView<M> view(state, local, slot);
+              auto& c = nodes.cell[static_cast<std::size_t>(e)];
+              Real xi[dim];
+              quad_coordinates(state, view.cell, c, xi);
+              c.rate = 0;
+              for_cube<dim>(0, 2, [&](const Index<dim>& corner) {
+                int at = view.at;
+                for (int d = 0; d < dim; ++d) at += corner[d] * BlockGrid<dim>::tile_stride(d);
+                const auto i = static_cast<std::size_t>(view.tile[at]);
+                CornerFunction<dim> shape(xi, corner, 1 / state.grid.cell_size());
+                if constexpr (State<M>::Kinematics::axisymmetric)
+                  shape.gradient[0] += shape.value / c.quad_point[0];
+                if (c.kind == CellKind::free) {
+                  for (int d = 0; d < dim; ++d) c.rate += shape.gradient[d] * nodes.mixture[i][d];
+                } else if constexpr (is_deformable<M>) {
+                  for (int d = 0; d < dim; ++d) c.rate += shape.gradient[d] * nodes.solid_out[i][d];
+                }
+              });
+            });
+}
+
+/// Mobility of a face with inertia and drag over one step: the liquid's answer to a head gradient
+/// that the nodal mean does not see, M = [rho / (n S dt) + gamma / k]^-1.
+template <class M>
+Real face_mobility(const State<M>& state, const FaceFlux& face, Real porosity,
+                   Real unit_weight) noexcept {
+  if (!(face.saturation > 0) || !(face.conductivity > 0)) return 0;
+  return 1 / (state.water.density / (porosity * face.saturation * state.dt) +
+              unit_weight / face.conductivity);
+}
+
+/// Flux through the lower face of a cell along an axis, from the nodal relative velocities; inside
+/// the soil the head gradient's departure from its nodal mean acts through the face mobility and
+/// removes the checkerboard that nodal means do not see.
+template <class M>
+void find_flux(State<M>& state, const CellView<M>& view, int axis, FaceFlux& face) {
+  constexpr int dim = State<M>::dim;
+  face.flux = 0;
+  if (face.kind == FaceKind::closed || (face.kind == FaceKind::surface && face.held < 0)) return;
+  const auto& nodes = state.nodes;
+  Real velocity = 0, mean_gradient = 0;
+  for_cube<dim>(0, 2, [&](const Index<dim>& corner) {
+    if (corner[axis]) return;
+    int at = view.at;
+    for (int d = 0; d < dim; ++d) at += corner[d] * BlockGrid<dim>::tile_stride(d);
+    const Record& r = nodes.relative[static_cast<std::size_t>(view.tile[at])];
+    velocity += r[axis];
+    mean_gradient += r[4 + axis];
+  });
+  constexpr Real corners = power<dim - 1>(2.0);
+  velocity /= corners;
+  mean_gradient /= corners;
+  Real flux = face.saturation * velocity;
+  if (face.kind == FaceKind::inside) {
+    const std::int32_t up_entry =
+        face.head_gradient > 0 ? view.entry() : view.neighbour(axis, -1);
+    const auto& up = nodes.cell[static_cast<std::size_t>(
+        nodes.dof[static_cast<std::size_t>(up_entry)])];
+    flux -= face_mobility(state, face, up.porosity,
+                          state.soils[up.material].material.unit_weight) *
+            (face.head_gradient - mean_gradient);
+  }
+  face.flux = face.area * flux;
+}
+
+/// Water that leaves through a face comes from the cell it leaves; the cell on that side, or
+/// nullptr where it comes from outside.
+template <class M>
+Cell<State<M>::dim>* donor(State<M>& state, const CellView<M>& view, int axis,
+                           const FaceFlux& face) noexcept {
+  const std::int32_t e = face.flux > 0 ? view.neighbour(axis, -1) : view.entry();
+  const std::int32_t owner = state.nodes.dof[static_cast<std::size_t>(e)];
+  return owner < 0 ? nullptr : &state.nodes.cell[static_cast<std::size_t>(owner)];
+}
+
+/// All face fluxes.
+template <class M>
+void find_fluxes(State<M>& state) {
+  constexpr int dim = State<M>::dim;
+  for_cells(state.grid, state.options.threads,
+            [&](std::int32_t e, const Index<dim>& local, int slot, int) {
+              const CellView<M> view(state, local, slot);
+              for (int d = 0; d < dim; ++d)
+                find_flux(state, view, d,
+                          state.nodes.face[static_cast<std::size_t>(e) * dim +
+                                           static_cast<std::size_t>(d)]);
+            });
+}
+
+/// One face of a pressure cell as seen from it: flux into the cell [m3/s] and the cell beyond.
+template <int Dim>
+struct Inflow {
+  Real flux = 0;
+  const Cell<Dim>* from = nullptr;  ///< other side, nullptr: boundary
+  const FaceFlux* face = nullptr;
+};
+
+/// Calls f(inflow) for every face of a pressure cell and its slivers.
+template <class M, class F>
+void for_inflows(const State<M>& state, const CellView<M>& view, F&& f) {
+  constexpr int dim = State<M>::dim;
+  const auto& nodes = state.nodes;
+  const auto other = [&](std::int32_t e) -> const Cell<dim>* {
+    const std::int32_t owner = nodes.dof[static_cast<std::size_t>(e)];
+    return owner < 0 ? nullptr : &nodes.cell[static_cast<std::size_t>(owner)];
+  };
+  const auto visit = [&](const Index<dim>& cell) {
+    const std::int32_t e = state.grid.entry(cell);
+    for (int d = 0; d < dim; ++d) {
+      Index<dim> below = cell, above = cell;
+      --below[d];
+      ++above[d];
+      const std::int32_t ea = state.grid.entry(above);
+      const FaceFlux& low = nodes.face[static_cast<std::size_t>(e) * dim + static_cast<std::size_t>(d)];
+      const FaceFlux& high =
+          nodes.face[static_cast<std::size_t>(ea) * dim + static_cast<std::size_t>(d)];
+      if (low.flux != 0) f(Inflow<dim>{low.flux, other(state.grid.entry(below)), &low});
+      if (high.flux != 0) f(Inflow<dim>{-high.flux, other(ea), &high});
+    }
+  };
+  visit(view.cell);
+  const std::int32_t own = view.entry();
+  for (int d = 0; d < dim; ++d)
+    for (int step = -1; step <= 1; step += 2) {
+      if (!view.has_neighbour(d, step)) continue;
+      if (nodes.dof[static_cast<std::size_t>(view.neighbour(d, step))] != own) continue;
+      Index<dim> cell = view.cell;
+      cell[d] += step;
+      visit(cell);
+    }
+}
+
+/// Limits the outflow of every cell to the water it holds; on a sound scheme this does nothing.
+template <class M>
+void limit_donors(State<M>& state) {
+  constexpr int dim = State<M>::dim;
+  for_cells(state.grid, state.options.threads,
+            [&](std::int32_t e, const Index<dim>& local, int slot, int) {
+              if (state.nodes.dof[static_cast<std::size_t>(e)] != e) return;
+              const CellView<M> view(state, local, slot);
+              auto& cell = state.nodes.cell[static_cast<std::size_t>(e)];
+              Real out = 0;
+              for_inflows(state, view, [&](const Inflow<dim>& f) { out += max(0.0, -f.flux); });
+              out *= state.dt * state.water.density;
+              cell.limit = out > cell.water ? cell.water / out : 1;
+            });
+}
+
+/// Water gained by every cell, its momentum, and the counts of held boundaries.
+template <class M>
+void find_gains(State<M>& state) {
+  constexpr int dim = State<M>::dim;
+  const Real mass_per_flux = state.dt * state.water.density;
+  const std::size_t held = state.held.size();
+  auto& nodes = state.nodes;
+  nodes.ledger_in.assign(static_cast<std::size_t>(state.grid.slots()) * 2 * held, 0);
+  for_cells(
+      state.grid, state.options.threads,
+      [&](std::int32_t e, const Index<dim>& local, int slot, int) {
+        if (nodes.dof[static_cast<std::size_t>(e)] != e) return;
+        auto& cell = nodes.cell[static_cast<std::size_t>(e)];
+        const CellView<M> view(state, local, slot);
+        Real momentum[dim] = {};
+        cell.gain = 0;
+        for_inflows(state, view, [&](const Inflow<dim>& f) {
+          const Real limit = f.flux < 0 ? cell.limit : f.from ? f.from->limit : 1;
+          const Real dm = mass_per_flux * limit * f.flux;
+          cell.gain += dm;
+          if (dm > 0 && f.from)
+            for (int d = 0; d < dim; ++d)
+              momentum[d] += dm * (f.from->mean_velocity[d] - cell.mean_velocity[d]);
+          if (!f.from && f.face->held >= 0) {
+            const std::size_t at = (static_cast<std::size_t>(slot) * held +
+                                    static_cast<std::size_t>(f.face->held)) * 2;
+            nodes.ledger_in[at + (dm > 0 ? 0 : 1)] += std::fabs(dm);
+          }
+        });
+        const Real after = cell.water + cell.gain;
+        for (int d = 0; d < dim; ++d)
+          cell.momentum_gain[d] = after > 0 ? momentum[d] / after : 0;
+      });
+  for (std::size_t h = 0; h < held; ++h)
+    for (std::size_t s = 0; s < static_cast<std::size_t>(state.grid.slots()); ++s) {
+      state.held[h].inflow += nodes.ledger_in[(s * held + h) * 2];
+      state.held[h].outflow += nodes.ledger_in[(s * held + h) * 2 + 1];
+    }
+}
+
+/// Step 4 (fluxes) and 8 (gains of cells).
+template <class M>
+void exchange_water(State<M>& state) {
+  find_rates(state);
+  if constexpr (has_skeleton<M>) {
+    if (state.frozen) return;
+    find_fluxes(state);
+    limit_donors(state);
+    find_gains(state);
+  }
+}
+
+}  // namespace vadose::kernel

@@ -1,0 +1,209 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+/// \file
+/// Step 4: faces between cells: head gradient, upstream saturation, conductivity.
+
+#include <vadose/kernel/pressure.hpp>
+
+namespace vadose::kernel {
+
+/// Conductivities of every soil cell at its own saturation and at S = 1.
+template <class M>
+void find_conductivities(State<M>& state) {
+  for_pressure_cells(state, [&](Cell<State<M>::dim>& cell, std::int32_t, int) {
+    if (cell.kind != CellKind::soil) return;
+    const auto& material = state.soils[cell.material].material;
+    cell.saturated_conductivity = conductivity::value<Real>(material.conductivity, 1, cell.porosity);
+    cell.conductivity = cell.saturated_conductivity;
+    if constexpr (is_unsaturated<M>) {
+      if (cell.saturation < 1)
+        cell.conductivity = conductivity::value<Real>(
+            material.conductivity,
+            swrc::effective_saturation<Real>(material.retention, cell.saturation), cell.porosity);
+    }
+  });
+}
+
+/// Conductivity between two pressures, Kirchhoff blend of DESIGN section 3 step 4:
+/// k = (k_up G + k_K |dp|) / (G + |dp|), k_K the mean of k over the pressures between.
+template <class M>
+Real face_conductivity(const State<M>& state, int material, Real upstream, Real p_a, Real p_b,
+                       Real porosity, Real gravity_head) {
+  if constexpr (is_unsaturated<M>) {
+    if (p_a >= 0 && p_b >= 0) return upstream;
+    const Real mean =
+        state.soils[static_cast<std::size_t>(material)].kirchhoff->mean(p_a, p_b, porosity);
+    return blend(upstream, mean, gravity_head, p_b - p_a);
+  } else {
+    return upstream;
+  }
+}
+
+/// Area of the lower face of a cell along an axis.
+template <class M>
+Real face_area(const CellView<M>& view, int axis) noexcept {
+  const Real h = view.state.grid.cell_size();
+  Real area = power<State<M>::dim - 1>(h);
+  if constexpr (State<M>::Kinematics::axisymmetric)
+    area *= axis == 0 ? view.centre(0) - 0.5 * h : view.centre(0);
+  return area;
+}
+
+/// |rho_l g| along an axis times a distance [Pa].
+template <class M>
+Real gravity_head(const State<M>& state, int axis, Real distance) noexcept {
+  return state.water.density * std::fabs(state.gravity[axis]) * distance;
+}
+
+/// Face between two soil cells with different pressures.
+template <class M>
+void inside_face(const State<M>& state, int axis, const Cell<State<M>::dim>& a,
+                 const Cell<State<M>::dim>& b, FaceFlux& face) {
+  const Real h = state.grid.cell_size();
+  const Real distance = max(0.5 * h, b.centroid[axis] - a.centroid[axis]);
+  const Real drop = b.pressure - a.pressure - hydrostatic(state, a.centroid, b.centroid);
+  const auto& up = drop > 0 ? b : a;
+  face.kind = FaceKind::inside;
+  face.head_gradient = drop / distance;
+  face.saturation = up.saturation;
+  face.conductivity =
+      face_conductivity(state, up.material, up.conductivity, a.pressure, b.pressure, up.porosity,
+                        gravity_head(state, axis, distance));
+}
+
+/// Face between soil and a held pressure (free water, an open surface or a wall) at x_face along
+/// the axis. Water that enters does so at S = 1.
+template <class M>
+void outer_face(const State<M>& state, int axis, const Cell<State<M>::dim>& soil,
+                const Real (&at)[State<M>::dim], Real pressure, FaceFlux& face) {
+  const Real h = state.grid.cell_size();
+  const Real distance = max(0.1 * h, std::fabs(at[axis] - soil.centroid[axis]));
+  const Real inward = pressure - soil.pressure - hydrostatic(state, soil.centroid, at);
+  face.head_gradient = (face.soil_below ? inward : -inward) / distance;
+  const bool enters = inward > 0;
+  face.saturation = enters ? 1 : soil.saturation;
+  face.conductivity = face_conductivity(
+      state, soil.material, enters ? soil.saturated_conductivity : soil.conductivity,
+      soil.pressure, pressure, soil.porosity, gravity_head(state, axis, distance));
+  face.held_pressure = pressure;
+}
+
+/// Middle of the lower face of a cell.
+template <class M>
+Vec<State<M>::dim> face_centre(const CellView<M>& view, int axis) {
+  Vec<State<M>::dim> x;
+  for (int d = 0; d < State<M>::dim; ++d) x[d] = view.centre(d);
+  x[axis] -= 0.5 * view.state.grid.cell_size();
+  return x;
+}
+
+/// Index of the held pressure at a wall (axis, side) or at the surface (axis -1); -1: none.
+template <class M>
+std::int16_t find_held(const State<M>& state, int axis, int side,
+                       const Vec<State<M>::dim>& x) {
+  for (std::size_t i = 0; i < state.held.size(); ++i) {
+    const auto& held = state.held[i];
+    if (held.face_axis == axis && (axis < 0 || held.face_side == side) && held.contains(x))
+      return static_cast<std::int16_t>(i);
+  }
+  return -1;
+}
+
+/// Face between soil and air: open if a pressure is held at the surface there, else closed.
+template <class M>
+void surface_face(const State<M>& state, const CellView<M>& view, int axis,
+                  const Cell<State<M>::dim>& soil, FaceFlux& face) {
+  const Vec<State<M>::dim> centre = face_centre(view, axis);
+  face.kind = FaceKind::surface;
+  face.saturation = soil.saturation;
+  face.conductivity = soil.conductivity;
+  face.held = find_held(state, -1, 0, centre);
+  if (face.held < 0) return;
+  const Real h = state.grid.cell_size();
+  Real at[State<M>::dim];
+  for (int d = 0; d < State<M>::dim; ++d) at[d] = soil.centroid[d];
+  at[axis] += (face.soil_below ? 0.5 : -0.5) * min(1.5, soil.fill) * h;
+  const Real p = state.held[static_cast<std::size_t>(face.held)].pressure(centre, state.time);
+  outer_face(state, axis, soil, at, p, face);
+}
+
+/// Face between soil and a wall.
+template <class M>
+void wall_face(const State<M>& state, const CellView<M>& view, int axis, int side,
+               const Cell<State<M>::dim>& soil, FaceFlux& face) {
+  const Vec<State<M>::dim> centre = face_centre(view, axis);
+  const std::int16_t held = find_held(state, axis, side, centre);
+  if (held < 0) return;
+  face.kind = FaceKind::surface;
+  face.held = held;
+  Real at[State<M>::dim];
+  for (int d = 0; d < State<M>::dim; ++d) at[d] = soil.centroid[d];
+  at[axis] = centre[axis];
+  const Real p = state.held[static_cast<std::size_t>(held)].pressure(centre, state.time);
+  outer_face(state, axis, soil, at, p, face);
+}
+
+/// Face between soil and free water.
+template <class M>
+void water_face(const State<M>& state, const CellView<M>& view, int axis,
+                const Cell<State<M>::dim>& soil, const Cell<State<M>::dim>& free,
+                FaceFlux& face) {
+  face.kind = FaceKind::to_free;
+  Real at[State<M>::dim];
+  for (int d = 0; d < State<M>::dim; ++d) at[d] = soil.centroid[d];
+  at[axis] = face_centre(view, axis)[axis];
+  const Real p = max(0.0, free.pressure + hydrostatic(state, free.centroid, at));
+  outer_face(state, axis, soil, at, p, face);
+}
+
+/// The lower face of one cell along one axis.
+template <class M>
+FaceFlux find_face(const State<M>& state, const CellView<M>& view, int axis) {
+  const auto& nodes = state.nodes;
+  FaceFlux face;
+  const int cells = state.grid.cells()[axis];
+  const int position = view.cell[axis];
+  if (position > cells) return face;
+  for (int d = 0; d < State<M>::dim; ++d)
+    if (d != axis && view.cell[d] >= state.grid.cells()[d]) return face;
+  const auto owner = [&](std::int32_t e) { return nodes.dof[static_cast<std::size_t>(e)]; };
+  const std::int32_t own = position < cells ? owner(view.entry()) : -1;
+  const std::int32_t low = position > 0 ? owner(view.neighbour(axis, -1)) : -1;
+  if (own == low) return face;
+  const Cell<State<M>::dim>* above = own < 0 ? nullptr : &nodes.cell[static_cast<std::size_t>(own)];
+  const Cell<State<M>::dim>* below = low < 0 ? nullptr : &nodes.cell[static_cast<std::size_t>(low)];
+  const bool soil_above = above && above->kind == CellKind::soil;
+  const bool soil_below = below && below->kind == CellKind::soil;
+  if (!soil_above && !soil_below) return face;
+  face.area = face_area(view, axis);
+  if (soil_above && soil_below) {
+    inside_face(state, axis, *below, *above, face);
+    return face;
+  }
+  face.soil_below = soil_below;
+  const auto& soil = soil_below ? *below : *above;
+  if (position == 0 || position == cells)
+    wall_face(state, view, axis, position == 0 ? 0 : 1, soil, face);
+  else if (above && below)
+    water_face(state, view, axis, soil, soil_below ? *above : *below, face);
+  else
+    surface_face(state, view, axis, soil, face);
+  return face;
+}
+
+/// Step 4: all faces.
+template <class M>
+void find_faces(State<M>& state) {
+  constexpr int dim = State<M>::dim;
+  find_conductivities(state);
+  for_cells(state.grid, state.options.threads,
+            [&](std::int32_t e, const Index<dim>& local, int slot, int) {
+              const CellView<M> view(state, local, slot);
+              for (int d = 0; d < dim; ++d)
+                state.nodes.face[static_cast<std::size_t>(e) * dim + static_cast<std::size_t>(d)] =
+                    find_face(state, view, d);
+            });
+}
+
+}  // namespace vadose::kernel

@@ -1,0 +1,267 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+/// \file
+/// Step 3, [Zhan] 3.4 (a): mass, momentum, stress and volume of the points to the nodes.
+
+#include <vadose/kernel/cells.hpp>
+
+namespace vadose::kernel {
+
+/// Index of stress component (a, b) in a SymTensor of a kinematics of dimension Dim; shears
+/// follow the normals as xy, yz, zx.
+template <int Dim>
+constexpr int stress_index(int a, int b) noexcept {
+  if (a == b) return a;
+  return a + b == 1 ? 3 : a + b == 3 ? 4 : 5;
+}
+
+/// Value and moments of the velocity that a batch hands to the nodes: v + C (x_I - x_p), C being
+/// the gradient (TPIC) or B D^-1 (APIC, D = second moment of the weights at the present place).
+/// `value` is for the first node of each point, `moment[e]` per cell along axis e.
+template <class M, class Shape, class Points>
+VADOSE_INLINE void affine_velocity(const State<M>& state, const Points& points, std::size_t b,
+                                   const Stencil<Shape, State<M>::dim>& stencil,
+                                   const TileFrame<State<M>::dim>& frame,
+                                   const Lanes (&x)[State<M>::dim],
+                                   Lanes (&value)[State<M>::dim],
+                                   Lanes (&moment)[State<M>::dim][State<M>::dim]) noexcept {
+  constexpr int dim = State<M>::dim;
+  const Real h = state.grid.cell_size();
+  for (int e = 0; e < dim; ++e) {
+    const Lanes first = Lanes(frame.first[e]) + Lanes(h) * Lanes::load(stencil.first[e]);
+    Lanes over_moment(1.0);
+    if constexpr (!M::Transfer::stores_gradient) {
+      Lanes second(0.0);
+      for (int i = 0; i < Shape::support; ++i) {
+        const Lanes r = first + Lanes(i * h) - x[e];
+        second += Lanes::load(stencil.weight[e][i]) * r * r;
+      }
+      // Hat functions have no second moment at a node; B is small there too.
+      over_moment = Lanes(1.0) / max(second, Lanes(1e-3 * h * h));
+    }
+    for (int d = 0; d < dim; ++d) {
+      const Lanes c = points.load(field::affine, b, d * dim + e) * over_moment;
+      value[d] += c * (first - x[e]);
+      moment[e][d] = c * Lanes(h);
+    }
+  }
+}
+
+/// Loads a batch's Bishop stress.
+template <class M>
+VADOSE_INLINE SymTensor<Lanes, State<M>::stress_size> load_stress(const State<M>& state,
+                                                                  std::size_t b) noexcept {
+  SymTensor<Lanes, State<M>::stress_size> stress;
+  for (int i = 0; i < State<M>::stress_size; ++i)
+    stress[i] = state.solid.load(field::bishop_stress, b, i);
+  return stress;
+}
+
+/// S p of the cells of a batch that touch air; zero elsewhere. There the liquid's part of the
+/// total stress is integrated by the solid points themselves, so that a free surface under
+/// suction is free of total stress node by node.
+template <class M>
+VADOSE_INLINE Lanes surface_liquid_stress(const State<M>& state, const CellFinder<State<M>::dim>& cells,
+                                          const std::int32_t* entries) noexcept {
+  Lanes sp(0.0);
+  for (int l = 0; l < lane_count; ++l) {
+    const std::int32_t owner = state.nodes.dof[static_cast<std::size_t>(entries[cells.index[l]])];
+    if (owner < 0) continue;
+    const auto& cell = state.nodes.cell[static_cast<std::size_t>(owner)];
+    if (cell.kind == CellKind::soil && cell.at_air) sp.set(l, cell.saturation * cell.pressure);
+  }
+  return sp;
+}
+
+/// Adds one batch of solid points to a tile.
+template <class M>
+VADOSE_INLINE void map_solid_batch(const State<M>& state, std::size_t b,
+                                   const TileFrame<State<M>::dim>& frame,
+                                   const std::int32_t* entries, Record* tile) noexcept {
+  constexpr int dim = State<M>::dim;
+  using Shape = typename M::Shape;
+  constexpr bool affine = M::Transfer::affine;
+  Lanes x[dim], half[dim];
+  load_positions(state.solid, b, x);
+  load_half_sizes(state.solid, b, half);
+  Stencil<Shape, dim> stencil;
+  stencil.evaluate(frame, x, half);
+
+  const Lanes mass = state.solid.load(field::mass, b);
+  const Lanes volume = state.solid.load(field::volume, b);
+  auto stress = load_stress(state, b);
+  if constexpr (has_liquid<M>) {
+    CellFinder<dim> cells;
+    cells.find(frame, x);
+    stress.add_isotropic(-surface_liquid_stress(state, cells, entries));
+  }
+  Scatter<true, affine, Shape, dim> scatter;
+  Lanes velocity[dim];
+  for (int d = 0; d < dim; ++d) velocity[d] = state.solid.load(field::velocity, b, d);
+  if constexpr (affine) {
+    Lanes moment[dim][dim];
+    affine_velocity(state, state.solid, b, stencil, frame, x, velocity, moment);
+    for (int e = 0; e < dim; ++e) {
+      for (auto& r : scatter.moment[e]) r = Lanes(0.0);
+      for (int d = 0; d < dim; ++d) scatter.moment[e][lane::momentum + d] = mass * moment[e][d];
+      transpose(scatter.moment[e]);
+    }
+  }
+  for (auto& r : scatter.value) r = Lanes(0.0);
+  scatter.value[lane::mass] = mass;
+  for (int d = 0; d < dim; ++d) scatter.value[lane::momentum + d] = mass * velocity[d];
+  scatter.value[lane::volume] = volume;
+  if constexpr (State<M>::Kinematics::axisymmetric)
+    scatter.value[lane::force] =
+        -volume * stress[2] *
+        over_radius<typename State<M>::Kinematics, dim>(x, Real(0));
+  transpose(scatter.value);
+  for (int e = 0; e < dim; ++e) {
+    for (auto& r : scatter.slope[e]) r = Lanes(0.0);
+    for (int d = 0; d < dim; ++d)
+      scatter.slope[e][lane::force + d] = -volume * stress[stress_index<dim>(d, e)];
+    transpose(scatter.slope[e]);
+  }
+  scatter.add(stencil, tile);
+}
+
+/// Solid points to nodes: m, m v, -sum sigma V grad S, V.
+template <class M>
+void map_solid(State<M>& state) {
+  constexpr int dim = State<M>::dim;
+  clear(state.nodes.solid_in, state.options.threads);
+  for_blocks_adding(state.solid, state.options.threads, [&](const BatchRange& range, int thread) {
+    Tile<dim>& tile = state.tile(thread);
+    const TileFrame<dim> frame = tile_frame(state.grid, range.slot);
+    const std::int32_t* entries = state.grid.tile(range.slot);
+    for (std::size_t b = range.begin; b < range.end; ++b) {
+      state.solid.prefetch(b + 2);
+      map_solid_batch(state, b, frame, entries, tile.record);
+    }
+    tile.add_to(state.grid, range.slot, state.nodes.solid_in);
+  });
+}
+
+/// Moves points of slivers to the edge of the cell whose pressure they share, for their mapping:
+/// nodes beyond it have no share in the pressure force.
+template <class M>
+VADOSE_INLINE void into_pressure_cell(const State<M>& state, const CellFinder<State<M>::dim>& cells,
+                                      const std::int32_t* entries, int slot,
+                                      Lanes (&x)[State<M>::dim]) noexcept {
+  constexpr int dim = State<M>::dim;
+  const Real h = state.grid.cell_size();
+  for (int l = 0; l < lane_count; ++l) {
+    const std::int32_t e = entries[cells.index[l]];
+    const std::int32_t owner = state.nodes.dof[static_cast<std::size_t>(e)];
+    if (owner < 0 || owner == e) continue;
+    int at = cells.index[l];
+    const Index<dim> first = state.grid.first_cell(slot);
+    for (int d = 0; d < dim; ++d) {
+      const int stride = BlockGrid<dim>::tile_stride(d);
+      const int position = (at / stride) % Block<dim>::tile_edge;
+      const Real low = state.grid.origin()[d] + (first[d] + position - 1) * h;
+      // Slivers are cells of the tile's inside, so their face neighbours are in the tile too,
+      // except at its rim; there the entry is compared directly.
+      if (position > 0 && entries[at - stride] == owner) x[d].set(l, min(x[d][l], low));
+      if (position + 1 < Block<dim>::tile_edge && entries[at + stride] == owner)
+        x[d].set(l, max(x[d][l], low + h));
+    }
+  }
+}
+
+/// Adds one batch of liquid points to a tile (hat functions).
+template <class M>
+VADOSE_INLINE void map_liquid_batch(const State<M>& state, std::size_t b,
+                                    const TileFrame<State<M>::dim>& frame, int slot,
+                                    Record* tile) noexcept {
+  constexpr int dim = State<M>::dim;
+  constexpr bool affine = M::Transfer::affine;
+  constexpr bool viscous = is_viscous<M>;
+  Lanes x[dim], none[dim];
+  load_positions(state.liquid, b, x);
+  CellFinder<dim> cells;
+  cells.find(frame, x);
+  into_pressure_cell(state, cells, state.grid.tile(slot), slot, x);
+  for (auto& n : none) n = Lanes(0.0);
+  Stencil<shape::Linear, dim> stencil;
+  stencil.evaluate(frame, x, none);
+  const Lanes mass = state.liquid.load(field::mass, b);
+  Scatter<viscous, affine, shape::Linear, dim> scatter;
+  Lanes velocity[dim];
+  for (int d = 0; d < dim; ++d) velocity[d] = state.liquid.load(field::velocity, b, d);
+  if constexpr (affine) {
+    Lanes moment[dim][dim];
+    affine_velocity(state, state.liquid, b, stencil, frame, x, velocity, moment);
+    for (int e = 0; e < dim; ++e) {
+      for (auto& r : scatter.moment[e]) r = Lanes(0.0);
+      for (int d = 0; d < dim; ++d) scatter.moment[e][lane::momentum + d] = mass * moment[e][d];
+      transpose(scatter.moment[e]);
+    }
+  }
+  for (auto& r : scatter.value) r = Lanes(0.0);
+  scatter.value[lane::mass] = mass;
+  for (int d = 0; d < dim; ++d) scatter.value[lane::momentum + d] = mass * velocity[d];
+  if constexpr (viscous) {
+    const bool is_free = state.liquid.group(b) == state.free_group();
+    const Lanes volume = is_free ? state.liquid.load(field::volume, b) : Lanes(0.0);
+    if constexpr (State<M>::Kinematics::axisymmetric)
+      scatter.value[lane::force] = -volume * state.liquid.load(field::viscous_stress, b, 2) *
+                                   over_radius<typename State<M>::Kinematics, dim>(x, Real(0));
+    for (int e = 0; e < dim; ++e) {
+      for (auto& r : scatter.slope[e]) r = Lanes(0.0);
+      for (int d = 0; d < dim; ++d)
+        scatter.slope[e][lane::force + d] =
+            -volume * state.liquid.load(field::viscous_stress, b, stress_index<dim>(d, e));
+      transpose(scatter.slope[e]);
+    }
+  }
+  transpose(scatter.value);
+  scatter.add(stencil, tile);
+}
+
+/// Liquid points to nodes: m, m v, viscous force.
+template <class M>
+void map_liquid(State<M>& state) {
+  constexpr int dim = State<M>::dim;
+  clear(state.nodes.liquid_in, state.options.threads);
+  for_blocks_adding(state.liquid, state.options.threads, [&](const BatchRange& range, int thread) {
+    Tile<dim>& tile = state.tile(thread);
+    const TileFrame<dim> frame = tile_frame(state.grid, range.slot);
+    for (std::size_t b = range.begin; b < range.end; ++b) {
+      state.liquid.prefetch(b + 2);
+      map_liquid_batch(state, b, frame, range.slot, tile.record);
+    }
+    tile.add_to(state.grid, range.slot, state.nodes.liquid_in);
+  });
+}
+
+/// Loads on the ground to nodes (hat functions at the surface itself). Few: one thread.
+template <class M>
+void map_loads(State<M>& state) {
+  constexpr int dim = State<M>::dim;
+  const Real h = state.grid.cell_size();
+  for (const auto& load : state.loads) {
+    const Real factor = state.factors[load.factor] ? state.factors[load.factor](state.time) : 1;
+    Index<dim> cell;
+    Real xi[dim];
+    for (int d = 0; d < dim; ++d) {
+      cell[d] = state.grid.cell_of(load.position[d], d);
+      xi[d] = (load.position[d] - state.grid.origin()[d]) / h - cell[d];
+    }
+    for_cube<dim>(0, 2, [&](const Index<dim>& corner) {
+      Index<dim> node = cell;
+      Real w = factor;
+      for (int d = 0; d < dim; ++d) {
+        node[d] += corner[d];
+        w *= corner[d] ? xi[d] : 1 - xi[d];
+      }
+      const std::int32_t e = state.grid.entry(node);
+      if (e == state.grid.outside()) return;
+      for (int d = 0; d < dim; ++d)
+        state.nodes.solid_in[static_cast<std::size_t>(e)][lane::force + d] += w * load.force[d];
+    });
+  }
+}
+
+}  // namespace vadose::kernel

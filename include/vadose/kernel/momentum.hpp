@@ -1,0 +1,476 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+/// \file
+/// Steps 5 to 7, [Zhan] 3.4 (d), (e): forces, drag, walls and new velocities of every node.
+
+#include <vadose/kernel/faces.hpp>
+#include <vadose/kernel/map_to_grid.hpp>
+
+namespace vadose::kernel {
+
+/// What the cells around a node give it.
+template <int Dim>
+struct NodeSums {
+  Real volume = 0;            ///< V_c,I = sum f V_c N_I [m3]
+  Real force[Dim] = {};       ///< G_I = sum f V_c (p - p_held) grad N_I [N]
+  Real soil_force[Dim] = {};  ///< sum f V_c S p grad N_I [N], cells at air left out
+  Real soil_volume = 0;       ///< share of V_c,I in soil cells, bulk of soil only [m3]
+  Real pores = 0;             ///< sum of n over it [m3]
+  Real saturation[Dim] = {};  ///< upstream, mean over the faces across an axis
+  Real conductivity[Dim] = {};
+  Real head_gradient[Dim] = {};
+  std::uint8_t material = 0;
+  bool closed_surface = false;  ///< touches soil and air, and no water passes
+  bool has_soil = false;
+  Real normal[Dim] = {};        ///< out of the soil, where closed_surface
+};
+
+/// Value and gradient of the hat function of corner `corner` (0 or 1 per axis) of a cell.
+template <int Dim>
+struct CornerFunction {
+  Real value = 1;
+  Real gradient[Dim];
+
+  CornerFunction(const Real (&xi)[Dim], const Index<Dim>& corner, Real over_h) noexcept {
+    Real n[Dim], g[Dim];
+    for (int d = 0; d < Dim; ++d) {
+      n[d] = corner[d] ? xi[d] : 1 - xi[d];
+      g[d] = corner[d] ? over_h : -over_h;
+      value *= n[d];
+    }
+    for (int d = 0; d < Dim; ++d) {
+      gradient[d] = g[d];
+      for (int e = 0; e < Dim; ++e)
+        if (e != d) gradient[d] *= n[e];
+    }
+  }
+};
+
+/// Coordinates of a cell's quadrature point in the cell, 0 .. 1 (up to 1.5 with slivers).
+template <class M>
+void quad_coordinates(const State<M>& state, const Index<State<M>::dim>& cell,
+                      const Cell<State<M>::dim>& c, Real (&xi)[State<M>::dim]) noexcept {
+  const Real over_h = 1 / state.grid.cell_size();
+  for (int d = 0; d < State<M>::dim; ++d)
+    xi[d] = (c.quad_point[d] - state.grid.origin()[d]) * over_h - cell[d];
+}
+
+/// Adds one cell's share to a node. corner: which corner of the cell the node is.
+template <class M>
+void add_cell(const State<M>& state, const Cell<State<M>::dim>& c,
+              const Index<State<M>::dim>& cell, const Index<State<M>::dim>& corner,
+              NodeSums<State<M>::dim>& node) noexcept {
+  constexpr int dim = State<M>::dim;
+  Real xi[dim];
+  quad_coordinates(state, cell, c, xi);
+  CornerFunction<dim> shape(xi, corner, 1 / state.grid.cell_size());
+  if constexpr (State<M>::Kinematics::axisymmetric)
+    shape.gradient[0] += shape.value / c.quad_point[0];
+  const Real weight = c.quad_volume * shape.value;
+  const Real soil_weight = weight * c.soil_share;
+  const bool with_soil = c.kind == CellKind::soil && !c.at_air;
+  const Real p = c.quad_volume * c.quad_pressure;
+  node.volume += weight;
+  for (int d = 0; d < dim; ++d) {
+    node.force[d] += p * shape.gradient[d];
+    // Free water carries p itself (S = 1).
+    if (with_soil || c.kind == CellKind::free)
+      node.soil_force[d] += c.saturation * p * shape.gradient[d];
+  }
+  if (c.kind == CellKind::soil) {
+    node.has_soil = true;
+    node.material = c.material;
+    node.soil_volume += soil_weight;
+    node.pores += soil_weight * c.porosity;
+    for (int d = 0; d < dim; ++d) {
+      node.saturation[d] += c.saturation;  // fallback where no face crosses the axis
+      node.conductivity[d] += c.conductivity;
+      node.normal[d] -= c.quad_volume * shape.gradient[d];
+    }
+  }
+}
+
+/// Adds the pull of a held pressure at an open surface or wall: - p_held N_I n dA.
+template <class M>
+void add_held(const State<M>& state, const FaceFlux& face, const Cell<State<M>::dim>& soil,
+              bool wall, bool on_soil_node, int axis, NodeSums<State<M>::dim>& node) noexcept {
+  if (face.held_pressure == 0) return;
+  constexpr int dim = State<M>::dim;
+  const Real outward = face.soil_below ? 1 : -1;
+  const Real share = face.area / power<dim - 1>(2.0);
+  // A surface below the face plane divides its pull among the nodes of the cut cell.
+  const Real at_surface = wall ? 1 : min(1.5, soil.fill);
+  node.force[axis] -= outward * share * face.held_pressure *
+                      (on_soil_node ? 1 - at_surface : at_surface);
+}
+
+/// Gathers cells and faces around a node (local index in its block).
+template <class M>
+NodeSums<State<M>::dim> gather_node(const State<M>& state, const CellView<M>& view) {
+  constexpr int dim = State<M>::dim;
+  const auto& nodes = state.nodes;
+  NodeSums<dim> node;
+  int soil_cells = 0, air = 0, faces[dim] = {};
+  Real saturation[dim] = {}, conductivity[dim] = {}, gradient[dim] = {};
+  bool open = false, water = false;
+  for_cube<dim>(0, 2, [&](const Index<dim>& corner) {
+    // The cell of which this node is corner `corner`.
+    Index<dim> cell = view.cell;
+    int at = view.at;
+    bool inside = true;
+    for (int d = 0; d < dim; ++d) {
+      cell[d] -= corner[d];
+      at -= corner[d] * BlockGrid<dim>::tile_stride(d);
+      inside = inside && cell[d] >= 0 && cell[d] < state.grid.cells()[d];
+    }
+    const auto e = static_cast<std::size_t>(view.tile[at]);
+    const std::int32_t owner = nodes.dof[e];
+    if (inside && owner < 0) ++air;
+    if (inside && owner == view.tile[at]) {
+      const auto& c = nodes.cell[e];
+      add_cell(state, c, cell, corner, node);
+      soil_cells += c.kind == CellKind::soil;
+      water = water || c.kind == CellKind::free;
+    }
+    // Faces whose plane goes through the node: lower faces of the cells on its upper side.
+    for (int d = 0; d < dim; ++d) {
+      if (corner[d]) continue;
+      const FaceFlux& f = nodes.face[e * dim + static_cast<std::size_t>(d)];
+      if (f.kind == FaceKind::closed) continue;
+      if (f.kind == FaceKind::surface && f.held < 0) continue;
+      open = open || f.kind == FaceKind::surface;
+      ++faces[d];
+      saturation[d] += f.saturation;
+      conductivity[d] += f.conductivity;
+      gradient[d] += f.head_gradient;
+    }
+    // Held pressures of surface faces of the cell, on both of its nodes along the axis.
+    for (int d = 0; d < dim; ++d) {
+      for (int side = 0; side < 2; ++side) {
+        const std::size_t fe =
+            side == 0 ? e : static_cast<std::size_t>(view.tile[at + BlockGrid<dim>::tile_stride(d)]);
+        const FaceFlux& f = nodes.face[fe * dim + static_cast<std::size_t>(d)];
+        if (f.kind != FaceKind::surface || f.held < 0 || f.held_pressure == 0) continue;
+        const bool own_cell_is_soil = f.soil_below == (side == 1);
+        if (!own_cell_is_soil || !inside || owner != view.tile[at]) continue;
+        const int position = cell[d] + side;
+        const bool wall = position == 0 || position == state.grid.cells()[d];
+        add_held(state, f, nodes.cell[e], wall, corner[d] != side, d, node);
+      }
+    }
+  });
+  for (int d = 0; d < dim; ++d) {
+    if (faces[d] > 0) {
+      node.saturation[d] = saturation[d] / faces[d];
+      node.conductivity[d] = conductivity[d] / faces[d];
+      node.head_gradient[d] = gradient[d] / faces[d];
+    } else if (soil_cells > 0) {
+      node.saturation[d] /= soil_cells;
+      node.conductivity[d] /= soil_cells;
+    }
+  }
+  node.closed_surface = soil_cells > 0 && air > 0 && !open && !water;
+  return node;
+}
+
+/// Velocities and masses of the two phases at a node.
+template <int Dim>
+struct NodeMotion {
+  Real solid_mass = 0, liquid_mass = 0;
+  Real solid[Dim] = {}, liquid[Dim] = {};          ///< before, then after [m/s]
+  Real solid_force[Dim] = {}, liquid_force[Dim] = {};  ///< [N]
+};
+
+/// Porosity of the control volume of a node: n_I = 1 - (1 - n) min(1, V_s / V_c). Volumetric, so
+/// that a trace of solid at a node does not make it soil.
+template <int Dim>
+Real nodal_porosity(const NodeSums<Dim>& sums, Real skeleton_volume) noexcept {
+  if (!(sums.soil_volume > 0) || !(sums.volume > 0)) return 1;
+  const Real n = sums.pores / sums.soil_volume;
+  return 1 - (1 - n) * min(1.0, skeleton_volume / sums.volume);
+}
+
+/// Forces of the liquid on both phases: f_l = phi G, f_s += R, R = sum f V S p grad N - phi G;
+/// at the fringe of the skeleton (occupancy o < 0.1) R is blended out.
+template <int Dim>
+void pressure_forces(const NodeSums<Dim>& sums, Real skeleton_volume, Real liquid_density,
+                     NodeMotion<Dim>& node) noexcept {
+  if (!(sums.volume > 0)) return;
+  const Real phi = node.liquid_mass / (liquid_density * sums.volume);
+  const Real occupancy = min(1.0, skeleton_volume / sums.volume);
+  const Real w = min(1.0, occupancy / 0.1);
+  const Real n = sums.soil_volume > 0 ? sums.pores / sums.soil_volume : 1;
+  for (int d = 0; d < Dim; ++d) {
+    node.liquid_force[d] += phi * sums.force[d];
+    const Real full = sums.soil_force[d] - phi * sums.force[d];
+    const Real fringe = occupancy * (sums.soil_force[d] - n * sums.saturation[d] * sums.force[d]);
+    node.solid_force[d] += w * full + (1 - w) * fringe;
+  }
+}
+
+/// Local damping of the skeleton: against its velocity, by its share of the mass.
+template <int Dim>
+void damp(Real damping, NodeMotion<Dim>& node) noexcept {
+  const Real share = node.solid_mass / (node.solid_mass + node.liquid_mass);
+  for (int d = 0; d < Dim; ++d) {
+    const Real out_of_balance = std::fabs(node.solid_force[d] + node.liquid_force[d]);
+    const Real v = node.solid[d];
+    if (v != 0) node.solid_force[d] -= std::copysign(damping * out_of_balance * share, v);
+  }
+}
+
+/// New velocities of both phases along one axis with implicit drag q = dt D:
+/// [a + q, -q; -q, b + q] (v_l, v_s) = (r_l, r_s). Momentum conserving, stable for any q.
+inline void solve_pair(Real a, Real b, Real q, Real r_l, Real r_s, Real& v_l, Real& v_s) noexcept {
+  const Real det = a * b + q * (a + b);
+  v_l = ((b + q) * r_l + q * r_s) / det;
+  v_s = ((a + q) * r_s + q * r_l) / det;
+}
+
+/// Takes the relative velocity along the outward normal away, keeping the momentum of the pair.
+template <int Dim>
+void tie_normal(const Real (&normal)[Dim], bool rigid, NodeMotion<Dim>& node) noexcept {
+  Real length = 0;
+  for (int d = 0; d < Dim; ++d) length += normal[d] * normal[d];
+  if (!(length > 0)) return;
+  Real relative = 0;
+  for (int d = 0; d < Dim; ++d) relative += (node.liquid[d] - node.solid[d]) * normal[d];
+  relative /= length;
+  const Real total = node.liquid_mass + node.solid_mass;
+  const Real liquid_share = rigid ? 1 : node.solid_mass / total;
+  for (int d = 0; d < Dim; ++d) {
+    node.liquid[d] -= liquid_share * relative * normal[d];
+    node.solid[d] += (1 - liquid_share) * relative * normal[d];
+  }
+}
+
+/// Motion of a node prescribed by the user, and friction on walls.
+template <class M>
+void apply_special(const State<M>& state, std::int32_t entry, const NodeMotion<State<M>::dim>& before,
+                   NodeMotion<State<M>::dim>& node) {
+  constexpr int dim = State<M>::dim;
+  for (const auto& s : state.special) {
+    if (s.entry != entry) continue;
+    const Real factor =
+        s.factor < state.factors.size() && state.factors[s.factor] ? state.factors[s.factor](state.time)
+                                                                   : 1;
+    for (int d = 0; d < dim; ++d)
+      if (s.prescribed[d]) node.solid[d] = factor * s.velocity[d];
+    if (s.friction_axis < 0) continue;
+    const int n = s.friction_axis;
+    const Real outward = s.friction_side == 0 ? -1 : 1;
+    const Real into = outward * node.solid[n];
+    if (into <= 0) continue;  // leaves the wall: no contact
+    node.solid[n] = 0;
+    Real speed = 0;
+    for (int d = 0; d < dim; ++d)
+      if (d != n) speed += node.solid[d] * node.solid[d];
+    speed = std::sqrt(speed);
+    const Real keep = speed > 0 ? max(0.0, 1 - s.friction * into / speed) : 0;
+    for (int d = 0; d < dim; ++d)
+      if (d != n) node.solid[d] *= keep;
+    static_cast<void>(before);
+  }
+}
+
+/// Drag per velocity of a node along each axis, D_I = n S V_s coefficient, for a law linear in the
+/// relative velocity; a quadratic part is linearised at the closed-form root (see below).
+template <class M>
+Real drag_coefficient(const State<M>& state, const NodeSums<State<M>::dim>& sums, Real porosity,
+                      Real volume, int axis) {
+  const Real s = max(sums.saturation[axis], 1e-12);
+  const Real k = sums.conductivity[axis];
+  const auto& material = state.soils[sums.material].material;
+  if (!(k > 0)) return 1e30;
+  return porosity * s * volume *
+         drag::coefficient<Real>(material.drag, porosity, s, k, material.unit_weight);
+}
+
+/// Factor 1 + B |w| / A by which a quadratic drag term raises the linear coefficient, with |w|
+/// after the step from the positive root of its equation (Forchheimer, closed form).
+template <class M>
+Real quadratic_drag_factor(const State<M>& state, const NodeSums<State<M>::dim>& sums, Real porosity,
+                           Real volume, const NodeMotion<State<M>::dim>& node,
+                           const Real (&linear)[State<M>::dim]) {
+  constexpr int dim = State<M>::dim;
+  if constexpr (!QuadraticDrag<typename M::Drag>) {
+    return 1;
+  } else {
+    Real w2 = 0, a = 0, k = 0, s = 0;
+    const Real inverse =
+        1 / node.liquid_mass + (node.solid_mass > 0 ? 1 / node.solid_mass : 0.0);
+    for (int d = 0; d < dim; ++d) {
+      const Real w = node.liquid[d] - node.solid[d] +
+                     state.dt * (node.liquid_force[d] / node.liquid_mass -
+                                 (node.solid_mass > 0 ? node.solid_force[d] / node.solid_mass : 0));
+      w2 += w * w;
+      a += linear[d] / dim;
+      k += sums.conductivity[d] / dim;
+      s += max(sums.saturation[d], 1e-12) / dim;
+    }
+    const auto& material = state.soils[sums.material].material;
+    const Real b = porosity * s * volume *
+                   drag::quadratic<Real>(material.drag, porosity, s, k, material.unit_weight,
+                                         state.water.density);
+    const Real p = 1 + state.dt * inverse * a;
+    const Real q = state.dt * inverse * b;
+    const Real w = 2 * std::sqrt(w2) / (p + std::sqrt(p * p + 4 * q * std::sqrt(w2)));
+    return a > 0 ? 1 + b * w / a : 1;
+  }
+}
+
+/// New velocities of a node that may hold both phases.
+template <class M>
+void advance_pair(const State<M>& state, const NodeSums<State<M>::dim>& sums, Real porosity,
+                  Real skeleton_volume, std::uint16_t flags, NodeMotion<State<M>::dim>& node) {
+  constexpr int dim = State<M>::dim;
+  const Real dt = state.dt;
+  const bool has_solid = is_rigid<M> ? sums.has_soil : node.solid_mass > 0;
+  const bool has_water = node.liquid_mass > 0;
+  const Real volume = min(skeleton_volume, sums.volume);
+  const bool drags = has_water && has_solid && volume > 0 && sums.has_soil;
+  Real linear[dim] = {};
+  Real factor = 1;
+  if (drags) {
+    for (int d = 0; d < dim; ++d) linear[d] = drag_coefficient(state, sums, porosity, volume, d);
+    factor = quadratic_drag_factor(state, sums, porosity, volume, node, linear);
+  }
+  for (int d = 0; d < dim; ++d) {
+    const Real a = node.liquid_mass, b = node.solid_mass;
+    const Real r_l = a * node.liquid[d] + dt * node.liquid_force[d];
+    const Real r_s = b * node.solid[d] + dt * node.solid_force[d];
+    const Real q = dt * linear[d] * factor;
+    const bool fixed = is_rigid<M> || (flags & (node_flag::solid_fixed << d)) != 0;
+    if (fixed)
+      node.solid[d] = 0;
+    else if (has_solid)
+      node.solid[d] = r_s / b;
+    if (has_water) node.liquid[d] = (r_l + q * node.solid[d]) / (a + q);
+    if (has_water && has_solid && !fixed) {
+      if (state.frozen)
+        node.liquid[d] = node.solid[d] = (r_l + r_s) / (a + b);
+      else if (drags)
+        solve_pair(a, b, q, r_l, r_s, node.liquid[d], node.solid[d]);
+    }
+    if (!has_water) node.liquid[d] = node.solid[d];
+  }
+}
+
+/// Closed surfaces and walls, after the velocities.
+template <class M>
+void apply_boundaries(const State<M>& state, const NodeSums<State<M>::dim>& sums,
+                      std::int32_t entry, std::uint16_t flags, const NodeMotion<State<M>::dim>& before,
+                      NodeMotion<State<M>::dim>& node) {
+  constexpr int dim = State<M>::dim;
+  const bool both = node.liquid_mass > 0 && (is_rigid<M> || node.solid_mass > 0);
+  if (sums.closed_surface && both) tie_normal(sums.normal, is_rigid<M>, node);
+  for (int d = 0; d < dim; ++d) {
+    if (flags & (node_flag::solid_fixed << d)) node.solid[d] = 0;
+    if (flags & (node_flag::liquid_fixed << d)) node.liquid[d] = 0;
+  }
+  if (flags & node_flag::special) apply_special(state, entry, before, node);
+}
+
+/// Writes the results of one node.
+template <class M>
+void store_node(State<M>& state, std::size_t i, const NodeSums<State<M>::dim>& sums, Real porosity,
+                const NodeMotion<State<M>::dim>& before, const NodeMotion<State<M>::dim>& after) {
+  constexpr int dim = State<M>::dim;
+  auto& nodes = state.nodes;
+  if constexpr (is_deformable<M>) {
+    Record out;
+    for (int d = 0; d < dim; ++d) {
+      out[lane::velocity + d] = after.solid[d];
+      out[lane::increment + d] = after.solid[d] - before.solid[d];
+    }
+    nodes.solid_out[i] = out;
+  }
+  if constexpr (has_liquid<M>) {
+    Record out, flux, relative;
+    for (int d = 0; d < dim; ++d) {
+      out[lane::velocity + d] = after.liquid[d];
+      out[lane::increment + d] = after.liquid[d] - before.liquid[d];
+      flux[d] = porosity * after.liquid[d] + (1 - porosity) * after.solid[d];
+      relative[d] = porosity * (after.liquid[d] - after.solid[d]);
+      relative[4 + d] = sums.head_gradient[d];
+    }
+    nodes.liquid_out[i] = out;
+    nodes.mixture[i] = flux;
+    nodes.relative[i] = relative;
+  }
+}
+
+/// Loads what the points mapped to a node.
+template <class M>
+NodeMotion<State<M>::dim> load_node(const State<M>& state, std::size_t i) noexcept {
+  constexpr int dim = State<M>::dim;
+  NodeMotion<dim> node;
+  if constexpr (is_deformable<M>) {
+    const Record& s = state.nodes.solid_in[i];
+    node.solid_mass = s[lane::mass];
+    for (int d = 0; d < dim; ++d) {
+      if (s[lane::mass] > 0) node.solid[d] = s[lane::momentum + d] / s[lane::mass];
+      node.solid_force[d] = s[lane::force + d] + s[lane::mass] * state.gravity[d];
+    }
+  }
+  if constexpr (has_liquid<M>) {
+    const Record& l = state.nodes.liquid_in[i];
+    node.liquid_mass = l[lane::mass];
+    for (int d = 0; d < dim; ++d) {
+      node.liquid[d] = l[lane::mass] > 0 ? l[lane::momentum + d] / l[lane::mass] : node.solid[d];
+      node.liquid_force[d] = l[lane::force + d] + l[lane::mass] * state.gravity[d];
+    }
+  }
+  return node;
+}
+
+/// One node: forces, drag, boundaries, new velocities.
+template <class M>
+void advance_node(State<M>& state, const CellView<M>& view) {
+  constexpr int dim = State<M>::dim;
+  const auto i = static_cast<std::size_t>(view.entry());
+  const std::uint16_t flags = state.nodes.node_flags[i];
+  NodeMotion<dim> node = load_node(state, i);
+  NodeSums<dim> sums;
+  Real porosity = 1;
+  if (node.solid_mass + node.liquid_mass <= 0) {
+    store_node(state, i, sums, porosity, node, node);
+    return;
+  }
+  const NodeMotion<dim> before = node;
+  Real skeleton_volume = 0;
+  if constexpr (has_liquid<M>) {
+    sums = gather_node(state, view);
+    if constexpr (is_deformable<M>)
+      skeleton_volume = state.nodes.solid_in[i][lane::volume];
+    else if constexpr (has_skeleton<M>)
+      skeleton_volume = sums.soil_volume;
+    porosity = nodal_porosity(sums, skeleton_volume);
+    pressure_forces(sums, skeleton_volume, state.water.density, node);
+  }
+  if (state.options.damping > 0 && node.solid_mass > 0) damp(state.options.damping, node);
+  if constexpr (has_liquid<M> && has_skeleton<M>) {
+    advance_pair(state, sums, porosity, skeleton_volume, flags, node);
+  } else {
+    for (int d = 0; d < dim; ++d) {
+      if (node.solid_mass > 0)
+        node.solid[d] += state.dt * node.solid_force[d] / node.solid_mass;
+      if (node.liquid_mass > 0)
+        node.liquid[d] += state.dt * node.liquid_force[d] / node.liquid_mass;
+    }
+  }
+  apply_boundaries(state, sums, view.entry(), flags, before, node);
+  store_node(state, i, sums, porosity, before, node);
+}
+
+/// All nodes.
+template <class M>
+void advance_nodes(State<M>& state) {
+  for_cells(state.grid, state.options.threads,
+            [&](std::int32_t, const Index<State<M>::dim>& local, int slot, int) {
+              advance_node(state, CellView<M>(state, local, slot));
+            });
+}
+
+}  // namespace vadose::kernel

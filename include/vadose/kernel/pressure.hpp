@@ -1,0 +1,270 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+/// \file
+/// Step 2: cell pressures from the water in the cells. One ledger: the mass on the points is the
+/// state, the pressure follows from it through S = 1 and through dry soil without a switch.
+
+#include <vadose/kernel/cells.hpp>
+
+namespace vadose::kernel {
+
+/// rho_l g . (to - from): pressure difference of water at rest [Pa].
+template <class M>
+Real hydrostatic(const State<M>& state, const Real (&from)[State<M>::dim],
+                 const Real (&to)[State<M>::dim]) noexcept {
+  Real dp = 0;
+  for (int d = 0; d < State<M>::dim; ++d)
+    dp += state.water.density * state.gravity[d] * (to[d] - from[d]);
+  return dp;
+}
+
+/// Calls f(cell, entry, slot) for every cell that owns a pressure.
+template <class M, class F>
+void for_pressure_cells(State<M>& state, F&& f) {
+  for_cells(state.grid, state.options.threads,
+            [&](std::int32_t e, const Index<State<M>::dim>&, int slot, int) {
+              if (state.nodes.dof[static_cast<std::size_t>(e)] == e)
+                f(state.nodes.cell[static_cast<std::size_t>(e)], e, slot);
+            });
+}
+
+/// Pressure of saturated cells, closed form: M = rho_l0 exp(p/K) sum n V.
+/// The centroid is pore weighted, so that the head inside the cell drops out to O((rho g h/K)^2).
+template <class M>
+void solve_saturated(State<M>& state) {
+  for_pressure_cells(state, [&](Cell<State<M>::dim>& cell, std::int32_t, int) {
+    if (cell.kind != CellKind::soil) return;
+    const Real bulk_modulus = state.water.bulk_modulus;
+    cell.saturation = 1;
+    cell.storage = cell.pore_volume / bulk_modulus;
+    if (!state.frozen)
+      cell.pressure =
+          bulk_modulus * std::log(cell.water / (state.water.density * cell.pore_volume));
+  });
+}
+
+/// Driest saturation a pressure is computed for: S_res + 0.01 (1 - S_res). Drier cells keep the
+/// pressure of this one; their water content stays exact.
+inline constexpr Real driest_effective_saturation = 0.01;
+
+/// Lowest pressure sought in a soil at porosity n [Pa].
+template <class M>
+Real pressure_floor(const Soil<M>& soil, Real porosity) {
+  const auto& curve = soil.material.retention;
+  const Real residual = swrc::residual_saturation(curve);
+  const Real s = swrc::suction(curve, residual + driest_effective_saturation * (1 - residual),
+                               porosity);
+  return -min(s, 1e9);
+}
+
+/// Sums content and storage of the pore water at the trial pressures of the cells.
+template <class M>
+void sum_content(State<M>& state, bool with_momentum) {
+  constexpr int dim = State<M>::dim;
+  const Lanes over_modulus(1 / state.water.bulk_modulus);
+  for_blocks_adding(state.liquid, state.options.threads, [&](const BatchRange& range, int thread) {
+    if (!state.nodes.retry[static_cast<std::size_t>(range.slot)]) return;
+    Tile<dim>& tile = state.tile(thread);
+    const TileFrame<dim> frame = tile_frame(state.grid, range.slot);
+    const std::int32_t* entries = state.grid.tile(range.slot);
+    for (std::size_t b = range.begin; b < range.end; ++b) {
+      const int group = state.liquid.group(b);
+      Lanes x[dim], record[lane_count];
+      load_positions(state.liquid, b, x);
+      CellFinder<dim> cells;
+      cells.find(frame, x);
+      for (auto& r : record) r = Lanes(0.0);
+      if (with_momentum) {
+        const Lanes m = state.liquid.load(field::mass, b);
+        for (int d = 0; d < dim; ++d) record[d] = m * state.liquid.load(field::velocity, b, d);
+      }
+      if constexpr (is_unsaturated<M>) {
+        if (group != state.free_group()) {
+          Lanes p;
+          for (int l = 0; l < lane_count; ++l) {
+            const std::int32_t owner =
+                state.nodes.dof[static_cast<std::size_t>(entries[cells.index[l]])];
+            Real at = 0;
+            if (owner >= 0) {
+              const auto& cell = state.nodes.cell[static_cast<std::size_t>(owner)];
+              at = cell.pressure;
+              for (int d = 0; d < dim; ++d)
+                at += state.water.density * state.gravity[d] * (x[d][l] - cell.centroid[d]);
+            }
+            p.set(l, at);
+          }
+          const auto theta = swrc::water_content<Lanes>(
+              state.soils[static_cast<std::size_t>(group)].material.retention, p,
+              state.liquid.load(field::porosity, b), over_modulus);
+          const Lanes volume = state.liquid.load(field::volume, b);
+          record[lane::content] = volume * theta.value;
+          record[lane::storage] = volume * theta.slope;
+        }
+      }
+      add_to_cells(cells, record, tile);
+    }
+    tile.add_to(state.grid, range.slot, state.nodes.content);
+  });
+}
+
+/// One safeguarded Newton step on the pressure of a cell; true when it is found.
+/// content, storage: sums at the present trial pressure; target: M / rho_l0.
+template <int Dim>
+bool improve_pressure(Cell<Dim>& cell, Real content, Real storage, Real target, Real floor) {
+  const Real excess = content - target;
+  cell.storage = storage;
+  if (excess > 0)
+    cell.high = min(cell.high, cell.pressure);
+  else
+    cell.low = max(cell.low, cell.pressure);
+  if (std::fabs(excess) <= 1e-14 * cell.pore_volume) return true;
+  if (cell.pressure <= floor && excess >= 0) return true;  // drier than any pressure sought
+  Real next = cell.pressure - excess / max(storage, 1e-30 * cell.pore_volume);
+  // The storage at p = 0 says nothing about the dry side: go there in growing steps.
+  if (next < 0 && next < cell.pressure)
+    next = max(next, min(10 * cell.pressure, cell.pressure - 100));
+  next = max(next, floor);
+  if (!(next > cell.low && next < cell.high) && next != floor) {
+    const Real middle = 0.5 * (cell.low + cell.high);
+    if (middle == cell.pressure) return true;
+    next = middle;
+  }
+  const bool same_side = (next < 0) == (cell.pressure < 0);
+  const bool close = std::fabs(excess) <= 1e-7 * cell.pore_volume &&
+                     std::fabs(next - cell.pressure) <= 1e-3 * std::fabs(cell.pressure) + 1;
+  const bool settled = std::fabs(next - cell.pressure) <= 1e-15 * std::fabs(cell.pressure);
+  cell.pressure = next;
+  return (same_side && close) || settled;
+}
+
+/// Clears content and momentum sums of the blocks that are still sought.
+template <class M>
+void clear_content(State<M>& state) {
+  parallel_for(static_cast<std::size_t>(state.grid.slots()), state.options.threads,
+               [&](std::size_t s, int) {
+                 if (!state.nodes.retry[s]) return;
+                 for (std::size_t i = s * Block<State<M>::dim>::cells;
+                      i < (s + 1) * Block<State<M>::dim>::cells; ++i)
+                   for (int l = lane::content; l < lane_count; ++l) state.nodes.content[i][l] = 0;
+               });
+}
+
+/// Sums of a pressure cell and its slivers.
+template <class M>
+Record member_sums(const CellView<M>& view, const AlignedVector<Record>& records) {
+  Record total;
+  for_members(view, [&](std::int32_t m) {
+    (Lanes::load(total.value) + Lanes::load(records[static_cast<std::size_t>(m)].value))
+        .store(total.value);
+  });
+  return total;
+}
+
+/// Marks the neighbours of blocks with unknown pressures: their points count there too.
+template <class M>
+void widen_retry(State<M>& state) {
+  const std::vector<char> own = state.nodes.retry;
+  for (int s = 0; s < state.grid.slots(); ++s) {
+    if (!own[static_cast<std::size_t>(s)]) continue;
+    for_cube<State<M>::dim>(-1, 2, [&](const Index<State<M>::dim>& step) {
+      Index<State<M>::dim> c = state.grid.first_cell(s);
+      for (int d = 0; d < State<M>::dim; ++d) c[d] += step[d] * Block<State<M>::dim>::edge;
+      const std::int32_t e = state.grid.entry(c);
+      if (e != state.grid.outside())
+        state.nodes.retry[static_cast<std::size_t>(e / Block<State<M>::dim>::cells)] = 1;
+    });
+  }
+}
+
+/// Pressure of unsaturated cells: sum V theta(p_c + rho g (x - x_c), n) = M / rho_l0.
+template <class M>
+void solve_unsaturated(State<M>& state) {
+  constexpr int dim = State<M>::dim;
+  constexpr int max_passes = 60;
+  auto& nodes = state.nodes;
+  for_pressure_cells(state, [&](Cell<dim>& cell, std::int32_t, int) {
+    cell.low = -1e10;
+    cell.high = 1e10;
+  });
+  for (int pass = 0; pass < max_passes; ++pass) {
+    clear_content(state);
+    sum_content(state, pass == 0);
+    const std::vector<char> sought = nodes.retry;
+    std::fill(nodes.retry.begin(), nodes.retry.end(), char{0});
+    for_cells(state.grid, state.options.threads,
+              [&](std::int32_t e, const Index<dim>& local, int slot, int) {
+                const auto i = static_cast<std::size_t>(e);
+                auto& cell = nodes.cell[i];
+                if (nodes.dof[i] != e || cell.kind != CellKind::soil) return;
+                if (!sought[static_cast<std::size_t>(slot)] || cell.low > cell.high) return;
+                const Record sums = member_sums(CellView<M>(state, local, slot), nodes.content);
+                const Real target = cell.water / state.water.density;
+                const Real floor = state.soils[cell.material].pressure_floor;
+                const bool found =
+                    state.frozen ? (cell.storage = sums[lane::storage], true)
+                                 : improve_pressure(cell, sums[lane::content],
+                                                    sums[lane::storage], target, floor);
+                if (found)
+                  cell.low = 1, cell.high = 0;  // found: not touched again
+                else
+                  nodes.retry[static_cast<std::size_t>(slot)] = 1;
+              });
+    bool any = false;
+    for (const char r : nodes.retry) any = any || r;
+    if (!any) break;
+    widen_retry(state);
+  }
+  for_pressure_cells(state, [&](Cell<dim>& cell, std::int32_t, int) {
+    if (cell.kind == CellKind::soil)
+      cell.saturation = min(1.0, cell.water / (state.water.density * cell.pore_volume));
+  });
+}
+
+/// Mean water velocity of every pressure cell, from the momentum summed with the content.
+template <class M>
+void mean_water_velocities(State<M>& state) {
+  constexpr int dim = State<M>::dim;
+  for_cells(state.grid, state.options.threads,
+            [&](std::int32_t e, const Index<dim>& local, int slot, int) {
+              const auto i = static_cast<std::size_t>(e);
+              if (state.nodes.dof[i] != e) return;
+              auto& cell = state.nodes.cell[i];
+              const Record sums =
+                  member_sums(CellView<M>(state, local, slot), state.nodes.content);
+              const Record masses = member_sums(CellView<M>(state, local, slot), state.nodes.pore);
+              const Record free = member_sums(CellView<M>(state, local, slot), state.nodes.free);
+              const Real m = masses[lane::water] + free[lane::free_water];
+              for (int d = 0; d < dim; ++d)
+                cell.mean_velocity[d] = m > 0 ? sums[d] / m : 0;
+            });
+}
+
+/// Steps 1 and 2: cells and their pressures from the points.
+template <class M>
+void find_pressures(State<M>& state) {
+  constexpr int dim = State<M>::dim;
+  sum_water(state);
+  if (state.soils.size() > 1) sum_materials(state);
+  classify_cells(state);
+  assign_pressure_cells(state);
+  gather_cells(state);
+  clear(state.nodes.content, state.options.threads);
+  std::fill(state.nodes.retry.begin(), state.nodes.retry.end(), char{1});
+  if constexpr (is_unsaturated<M>) {
+    solve_unsaturated(state);
+  } else {
+    sum_content(state, true);
+    if constexpr (has_skeleton<M>) solve_saturated(state);
+  }
+  mean_water_velocities(state);
+  for_pressure_cells(state, [&](Cell<dim>& cell, std::int32_t, int) {
+    cell.quad_pressure = cell.pressure + hydrostatic(state, cell.centroid, cell.quad_point);
+    if (cell.kind == CellKind::free) {
+      cell.saturation = 1;
+      cell.quad_pressure = max(0.0, cell.quad_pressure);  // water does not pull on air
+    }
+  });
+}
+
+}  // namespace vadose::kernel

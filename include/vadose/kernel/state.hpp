@@ -1,0 +1,153 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+/// \file
+/// Everything a step works on: points, grid arrays, soils, loads. Kernels are free functions of it.
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <vadose/grid/point_set.hpp>
+#include <vadose/kernel/grid_state.hpp>
+#include <vadose/kernel/tile.hpp>
+#include <vadose/model/fields.hpp>
+#include <vadose/model/material.hpp>
+#include <vadose/policy/kirchhoff.hpp>
+
+namespace vadose {
+
+/// At most this many soils in one scene: one lane each in GridState::materials.
+inline constexpr int max_materials = lane_count;
+
+/// One soil, ready for use in loops.
+template <class M, bool WithLaw = has_skeleton<M>>
+struct Soil {
+  Material<M> material;                          ///< all shared numbers handed on
+  law::PreparedOf<typename M::Skeleton> law;     ///< with derived numbers
+  Real p_wave_modulus = 0;                       ///< of the initial state [Pa]
+  Real pressure_floor = -1e9;                    ///< lowest pressure sought [Pa]
+  Real saturated_conductivity = 0;               ///< at the reference porosity [m/s]
+  std::optional<KirchhoffMean<typename M::Retention, typename M::Conductivity>> kirchhoff;
+};
+template <class M>
+struct Soil<M, false> {};
+
+/// A load on the ground that follows the soil: a piece of surface with a fixed force.
+template <int Dim>
+struct SurfaceLoad {
+  Vec<Dim> position;    ///< on the surface, carried along [m]
+  Vec<Dim> force;       ///< at factor 1 [N]
+  std::size_t factor;   ///< which time factor
+};
+
+/// A node whose solid motion is prescribed or limited by friction.
+template <int Dim>
+struct SpecialNode {
+  std::int32_t entry = -1;
+  bool prescribed[Dim] = {};
+  Real velocity[Dim] = {};   ///< at factor 1 [m/s]
+  std::size_t factor = 0;    ///< which time factor
+  int friction_axis = -1;    ///< normal of a frictional wall, -1: none
+  int friction_side = 0;     ///< 0: wall at the lower end
+  Real friction = 0;         ///< coefficient [-]
+};
+
+/// Where the liquid meets something at a held pressure: a wall, or the ground surface.
+template <int Dim>
+struct HeldPressure {
+  int face_axis = -1;  ///< wall normal; -1: the ground surface
+  int face_side = 0;
+  std::function<bool(const Vec<Dim>&)> contains;       ///< part of it
+  std::function<Real(const Vec<Dim>&, Real)> pressure;  ///< p(x, t) [Pa]
+  Real inflow = 0;   ///< water taken in so far [kg]
+  Real outflow = 0;  ///< water let out so far [kg]
+};
+
+/// Numbers of the liquid.
+struct LiquidNumbers {
+  Real density = 1000;         ///< rho_l0 [kg/m3]
+  Real bulk_modulus = 2.2e9;   ///< K [Pa]
+};
+
+/// Choices of the explicit step.
+struct StepOptions {
+  Real courant = 0.5;           ///< C [-] of the stable step
+  Real damping = 0;             ///< local damping of the skeleton [-], in [0, 1)
+  Real displacement_cap = 0.1;  ///< largest motion in a step, in cells
+  Real dt_max = 1e30;           ///< largest step [s]
+  Real free_relaxation = 10;    ///< rate at which free points of a cell share its pressure [1/s]
+  int threads = 1;              ///< used where the host links OpenMP
+};
+
+/// Sums of one thread, in its own cache lines.
+struct alignas(64) StepSums {
+  Real max_speed2 = 0;       ///< [m2/s2]
+  Real max_wave2 = 0;        ///< largest dry p-wave speed squared [m2/s2]
+  Real max_advection = 0;
+  bool failed = false;
+};
+
+/// What went wrong where.
+struct Trouble {
+  const char* criterion = nullptr;  ///< nullptr: nothing
+  const char* phase = "";           ///< "solid", "liquid"
+  Real value = 0;
+  std::int64_t id = -1;
+  std::array<Real, 3> position{};
+};
+
+/// State of a run of model M.
+template <class M>
+struct State {
+  using Kinematics = typename M::Kinematics;
+  static constexpr int dim = Kinematics::dim;
+  static constexpr int stress_size = Kinematics::stress_size;
+  using Solid = PointSet<dim, SolidFields<M>>;
+  using Liquid = PointSet<dim, LiquidFields<M>>;
+
+  BlockGrid<dim> grid;
+  GridState<dim> nodes;
+  Solid solid;
+  Liquid liquid;
+  std::vector<Soil<M>> soils;
+  [[no_unique_address]] std::conditional_t<has_liquid<M>, typename M::Liquid, NoLiquid> fluid;
+  typename M::Transfer transfer;
+  LiquidNumbers water;
+  Vec<dim> gravity = Vec<dim>::Zero();
+  StepOptions options;
+
+  Real time = 0;                ///< [s]
+  Real dt = 0;                  ///< step in work [s]
+  std::int64_t step = 0;        ///< steps taken
+  Real slack = 0;               ///< motion since the last sort [m]
+  bool frozen = false;          ///< liquid state held while the skeleton settles
+  bool has_free = false;        ///< free points exist
+  Real loads_factor = 1;
+
+  std::vector<SurfaceLoad<dim>> loads;
+  std::vector<std::function<Real(Real)>> factors;
+  std::vector<SpecialNode<dim>> special;
+  std::vector<HeldPressure<dim>> held;
+
+  std::vector<std::unique_ptr<kernel::Tile<dim>>> tiles;  ///< one per thread and use
+  std::vector<StepSums> sums;                             ///< one per thread
+  Trouble trouble;
+
+  /// Group of free water among liquid points.
+  int free_group() const noexcept { return static_cast<int>(soils.size()); }
+  /// Scratch tile of a thread.
+  kernel::Tile<dim>& tile(int thread, int use = 0) noexcept {
+    return *tiles[static_cast<std::size_t>(2 * thread + use)];
+  }
+  /// Volume of a cell (per metre, per radian): h^dim, times the radius of its centre.
+  Real cell_volume(Real radius) const noexcept {
+    const Real v = power<dim>(grid.cell_size());
+    return Kinematics::axisymmetric ? v * radius : v;
+  }
+};
+
+}  // namespace vadose

@@ -1,0 +1,515 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+/// \file
+/// Steps 7 and 8 on the points, [Zhan] 3.4 (f) to (h): velocities, positions, strains, stresses,
+/// volumes, exchanged water, pressures.
+
+#include <vadose/kernel/exchange.hpp>
+
+namespace vadose::kernel {
+
+/// Spin and rate of deformation from a velocity gradient l[a][b] = dv_a/dx_b.
+template <int N, int Dim>
+VADOSE_INLINE SymTensor<Lanes, N> rate_of_deformation(const Lanes (&l)[Dim][Dim],
+                                                      const Lanes& hoop) noexcept {
+  SymTensor<Lanes, N> rate;
+  for (int i = 0; i < N; ++i) rate[i] = Lanes(0.0);
+  for (int d = 0; d < Dim; ++d) rate[d] = l[d][d];
+  if constexpr (Dim == 2) {
+    rate[2] = hoop;
+    rate[3] = Lanes(0.5) * (l[0][1] + l[1][0]);
+  }
+  if constexpr (Dim == 3) {
+    rate[3] = Lanes(0.5) * (l[0][1] + l[1][0]);
+    rate[4] = Lanes(0.5) * (l[1][2] + l[2][1]);
+    rate[5] = Lanes(0.5) * (l[0][2] + l[2][0]);
+  }
+  return rate;
+}
+
+/// Jaumann rotation of a stress over a step: sigma += dt (W sigma - sigma W), W the spin. The
+/// rotation is done exactly about the axis of W (to second order in 3D by two half steps), so that
+/// invariants do not drift.
+template <int N, int Dim>
+VADOSE_INLINE void rotate_stress(const Lanes (&l)[Dim][Dim], Real dt,
+                                 SymTensor<Lanes, N>& s) noexcept {
+  if constexpr (Dim == 2) {
+    // Cayley transform: cos and sin of the step's angle to third order, exactly orthogonal.
+    const Lanes half = Lanes(0.25 * dt) * (l[1][0] - l[0][1]);
+    const Lanes over = Lanes(1.0) / (Lanes(1.0) + half * half);
+    const Lanes c = (Lanes(1.0) - half * half) * over;
+    const Lanes q = Lanes(2.0) * half * over;
+    const Lanes xx = s[0], yy = s[1], xy = s[3];
+    s[0] = c * c * xx - Lanes(2.0) * c * q * xy + q * q * yy;
+    s[1] = q * q * xx + Lanes(2.0) * c * q * xy + c * c * yy;
+    s[3] = c * q * (xx - yy) + (c * c - q * q) * xy;
+  }
+  if constexpr (Dim == 3) {
+    // R = (I - W dt/2)^-1 (I + W dt/2) = I + 2 (A + A^2) / (1 + a.a), A = W dt/2 = [a]x.
+    const Lanes ax = Lanes(0.25 * dt) * (l[2][1] - l[1][2]);
+    const Lanes ay = Lanes(0.25 * dt) * (l[0][2] - l[2][0]);
+    const Lanes az = Lanes(0.25 * dt) * (l[1][0] - l[0][1]);
+    const Lanes f = Lanes(2.0) / (Lanes(1.0) + ax * ax + ay * ay + az * az);
+    const Lanes one(1.0);
+    const Lanes r[3][3] = {{one - f * (ay * ay + az * az), f * (ax * ay - az), f * (ax * az + ay)},
+                           {f * (ax * ay + az), one - f * (ax * ax + az * az), f * (ay * az - ax)},
+                           {f * (ax * az - ay), f * (ay * az + ax), one - f * (ax * ax + ay * ay)}};
+    const Lanes m[3][3] = {{s[0], s[3], s[5]}, {s[3], s[1], s[4]}, {s[5], s[4], s[2]}};
+    Lanes rm[3][3];
+    for (int i = 0; i < 3; ++i)
+      for (int j = 0; j < 3; ++j)
+        rm[i][j] = r[i][0] * m[0][j] + r[i][1] * m[1][j] + r[i][2] * m[2][j];
+    const auto entry = [&](int i, int j) {
+      return rm[i][0] * r[j][0] + rm[i][1] * r[j][1] + rm[i][2] * r[j][2];
+    };
+    s[0] = entry(0, 0);
+    s[1] = entry(1, 1);
+    s[2] = entry(2, 2);
+    s[3] = entry(0, 1);
+    s[4] = entry(1, 2);
+    s[5] = entry(0, 2);
+  }
+}
+
+/// What nodes hand back to eight points.
+template <int Dim>
+struct PointMotion {
+  Lanes velocity[Dim];        ///< interpolated new velocity
+  Lanes increment[Dim];       ///< interpolated change of velocity
+  Lanes gradient[Dim][Dim];   ///< dv_a/dx_b
+};
+
+/// Interpolates velocity, its change and gradient.
+template <bool Slopes, class Shape, int Dim>
+VADOSE_INLINE void interpolate(const Stencil<Shape, Dim>& stencil, const Record* tile,
+                               PointMotion<Dim>& motion) noexcept {
+  Gather<Slopes, Shape, Dim> gather;
+  gather.sum(stencil, tile);
+  gather.by_field();
+  for (int a = 0; a < Dim; ++a) {
+    motion.velocity[a] = gather.value[lane::velocity + a];
+    motion.increment[a] = gather.value[lane::increment + a];
+    if constexpr (Slopes)
+      for (int b = 0; b < Dim; ++b) motion.gradient[a][b] = gather.slope[b][lane::velocity + a];
+  }
+}
+
+/// First moments of the nodal velocity, B = sum w v (x_I - x_p)^T (APIC). For tensor-product
+/// weights it needs one more pass over the nodes; done per point.
+template <class Shape, int Dim>
+VADOSE_INLINE void velocity_moment(const Stencil<Shape, Dim>& s, const TileFrame<Dim>& frame, Real h,
+                                   const Lanes (&x)[Dim], const Record* tile,
+                                   Lanes (&moment)[Dim][Dim]) noexcept {
+  for (int l = 0; l < lane_count; ++l) {
+    Real sum[Dim][Dim] = {};
+    for_cube<Dim>(0, Shape::support, [&](const Index<Dim>& i) {
+      const double w = s.product(i, l);
+      int at = s.offset[l];
+      for (int d = 0; d < Dim; ++d) at += i[d] * BlockGrid<Dim>::tile_stride(d);
+      for (int b = 0; b < Dim; ++b) {
+        const Real r = frame.first[b] + (s.first[b][l] + i[b]) * h - x[b][l];
+        for (int a = 0; a < Dim; ++a) sum[a][b] += w * tile[at][lane::velocity + a] * r;
+      }
+    });
+    for (int a = 0; a < Dim; ++a)
+      for (int b = 0; b < Dim; ++b) moment[a][b].set(l, sum[a][b]);
+  }
+}
+
+/// New velocity of a batch by the model's transfer.
+template <class M, class Shape, class Points>
+VADOSE_INLINE void update_velocity(const State<M>& state, Points& points, std::size_t b,
+                                   const Stencil<Shape, State<M>::dim>& stencil,
+                                   const TileFrame<State<M>::dim>& frame,
+                                   const Lanes (&x)[State<M>::dim], const Record* tile,
+                                   const PointMotion<State<M>::dim>& motion) noexcept {
+  constexpr int dim = State<M>::dim;
+  if constexpr (M::Transfer::blends) {
+    const Lanes keep(std::exp(-state.transfer.pic_rate * state.dt));
+    for (int d = 0; d < dim; ++d) {
+      const Lanes flip = points.load(field::velocity, b, d) + motion.increment[d];
+      points.store(field::velocity, b, d, keep * flip + (Lanes(1.0) - keep) * motion.velocity[d]);
+    }
+  } else {
+    for (int d = 0; d < dim; ++d) points.store(field::velocity, b, d, motion.velocity[d]);
+    if constexpr (M::Transfer::stores_gradient) {
+      for (int i = 0; i < dim; ++i)
+        for (int j = 0; j < dim; ++j)
+          points.store(field::affine, b, i * dim + j, motion.gradient[i][j]);
+    } else {
+      Lanes moment[dim][dim];
+      velocity_moment(stencil, frame, state.grid.cell_size(), x, tile, moment);
+      for (int i = 0; i < dim; ++i)
+        for (int j = 0; j < dim; ++j) points.store(field::affine, b, i * dim + j, moment[i][j]);
+    }
+  }
+}
+
+/// Stretches GIMP half sizes along the axes, at most to half a cell (the three-node stencil).
+template <class Points, int Dim>
+VADOSE_INLINE void update_half_sizes(Points& points, std::size_t b,
+                                     const Lanes (&gradient)[Dim][Dim], Real dt, Real h) noexcept {
+  if constexpr (Points::fields::template has<field::HalfSize>) {
+    for (int d = 0; d < Dim; ++d) {
+      const Lanes half = points.load(field::half_size, b, d) * exp(Lanes(dt) * gradient[d][d]);
+      points.store(field::half_size, b, d, min(max(half, Lanes(1e-3 * h)), Lanes(0.5 * h)));
+    }
+  }
+}
+
+/// Volume rates of the pressure cells of eight points; `otherwise` where there is none.
+template <class M>
+VADOSE_INLINE Lanes cell_rates(const State<M>& state, const CellFinder<State<M>::dim>& cells,
+                               const std::int32_t* entries, const Lanes& otherwise) noexcept {
+  Lanes rate = otherwise;
+  for (int l = 0; l < lane_count; ++l) {
+    const std::int32_t owner = state.nodes.dof[static_cast<std::size_t>(entries[cells.index[l]])];
+    if (owner < 0) continue;
+    const auto& cell = state.nodes.cell[static_cast<std::size_t>(owner)];
+    if (cell.kind == CellKind::soil) rate.set(l, cell.rate);
+  }
+  return rate;
+}
+
+/// Records the first thing found wrong with a lane of a batch.
+template <class M, class Points>
+void report_trouble(State<M>& state, const Points& points, std::size_t b, const LaneMask& bad,
+                    const char* criterion, const char* phase, const Lanes& value) noexcept {
+  for (int l = 0; l < lane_count; ++l) {
+    const double id = points.at(field::id, b)[l];
+    if (!bad[l] || id < 0) continue;
+#ifdef _OPENMP
+#pragma omp critical(vadose_trouble)
+#endif
+    {
+      const auto number = static_cast<std::int64_t>(id);
+      if (!state.trouble.criterion || number < state.trouble.id) {
+        state.trouble = Trouble{criterion, phase, value[l], number, {}};
+        for (int d = 0; d < State<M>::dim; ++d)
+          state.trouble.position[static_cast<std::size_t>(d)] = points.at(field::position, b, d)[l];
+      }
+    }
+  }
+}
+
+/// Moves a batch by dt v and checks it: finite, |v| dt below a cell, inside the box.
+template <class M, class Points>
+VADOSE_INLINE void move(State<M>& state, Points& points, std::size_t b, const char* phase,
+                        const Lanes (&velocity)[State<M>::dim], StepSums& sums) noexcept {
+  constexpr int dim = State<M>::dim;
+  const Real h = state.grid.cell_size();
+  Lanes speed2(0.0);
+  LaneMask outside = Lanes(1.0) < Lanes(0.0);
+  for (int d = 0; d < dim; ++d) {
+    const Lanes x = points.load(field::position, b, d) + Lanes(state.dt) * velocity[d];
+    points.store(field::position, b, d, x);
+    speed2 += velocity[d] * velocity[d];
+    const Real low = state.grid.origin()[d];
+    const Real high = low + state.grid.cells()[d] * h;
+    outside = outside | !(x >= Lanes(low)) | !(x <= Lanes(high));
+  }
+  const Real limit = h / state.dt;
+  const LaneMask fast = !(speed2 < Lanes(limit * limit));  // also true for NaN
+  const LaneMask alive = points.load(field::id, b) >= Lanes(0.0);
+  if (any((fast | outside) & alive)) {
+    sums.failed = true;
+    report_trouble(state, points, b, fast & alive, "|v| dt < cell size", phase, sqrt(speed2));
+    report_trouble(state, points, b, outside & alive, "points inside the box", phase,
+                   points.load(field::position, b, 0));
+  }
+  sums.max_speed2 = max(sums.max_speed2, max_lane(select(alive & !fast, speed2, Lanes(0.0))));
+}
+
+/// One batch of solid points.
+template <class M>
+VADOSE_INLINE void update_solid_batch(State<M>& state, std::size_t b,
+                                      const TileFrame<State<M>::dim>& frame,
+                                      const std::int32_t* entries, const Record* tile,
+                                      StepSums& sums) noexcept {
+  constexpr int dim = State<M>::dim;
+  constexpr int n = State<M>::stress_size;
+  using K = typename State<M>::Kinematics;
+  auto& points = state.solid;
+  const Real dt = state.dt;
+  Lanes x[dim], half[dim];
+  load_positions(points, b, x);
+  load_half_sizes(points, b, half);
+  Stencil<typename M::Shape, dim> stencil;
+  stencil.evaluate(frame, x, half);
+  PointMotion<dim> motion;
+  interpolate<true>(stencil, tile, motion);
+
+  const Lanes hoop = motion.velocity[0] * over_radius<K, dim>(x, Real(0));
+  const auto rate = rate_of_deformation<n>(motion.gradient, hoop);
+  StrainStep<Lanes, n> step;
+  step.dt = dt;
+  for (int i = 0; i < n; ++i) step.increment[i] = Lanes(dt) * rate[i];
+  auto stress = load_stress(state, b);
+  rotate_stress(motion.gradient, dt, stress);
+  constexpr int state_size = law::state_size<typename M::Skeleton>;
+  Lanes numbers[state_size + 1];
+  for (int i = 0; i < state_size; ++i) numbers[i] = points.load(field::law_state, b, i);
+  const auto& soil = state.soils[static_cast<std::size_t>(points.group(b))];
+  if (law::apply(soil.law, step, stress, numbers) != Status::ok) {
+    sums.failed = true;
+    report_trouble(state, points, b, Lanes(0.0) < Lanes(1.0), "admissible stress", "solid",
+                   stress.mean());
+  }
+  for (int i = 0; i < n; ++i) points.store(field::bishop_stress, b, i, stress[i]);
+  for (int i = 0; i < state_size; ++i) points.store(field::law_state, b, i, numbers[i]);
+
+  Lanes volume_rate = rate.trace();
+  if constexpr (has_liquid<M>) {
+    CellFinder<dim> cells;
+    cells.find(frame, x);
+    volume_rate = cell_rates(state, cells, entries, volume_rate);
+  }
+  const Lanes volume = points.load(field::volume, b) * exp(Lanes(dt) * volume_rate);
+  points.store(field::volume, b, volume);
+  const Lanes mass = points.load(field::mass, b);
+  const Lanes alive_mass = max(mass, Lanes(1e-300));
+  sums.max_wave2 = max(
+      sums.max_wave2, max_lane(Lanes(soil.p_wave_modulus) * select(mass > Lanes(0.0), volume,
+                                                                  Lanes(0.0)) / alive_mass));
+  const LaneMask solid_only = (mass > Lanes(0.0)) &
+                              !(mass < Lanes(soil.material.solid_density) * volume);
+  if (any(solid_only)) {
+    sums.failed = true;
+    report_trouble(state, points, b, solid_only, "porosity in (0, 1)", "solid",
+                   Lanes(1.0) - mass / (Lanes(soil.material.solid_density) * volume));
+  }
+  update_half_sizes(points, b, motion.gradient, dt, state.grid.cell_size());
+  update_velocity(state, points, b, stencil, frame, x, tile, motion);
+  move(state, points, b, "solid", motion.velocity, sums);
+}
+
+/// Nodes to solid points: velocity, position, stress, volume.
+template <class M>
+void update_solid(State<M>& state) {
+  constexpr int dim = State<M>::dim;
+  for_blocks(state.solid, state.options.threads, [&](const BatchRange& range, int thread) {
+    Tile<dim>& tile = state.tile(thread);
+    tile.read(state.grid, range.slot, state.nodes.solid_out);
+    const TileFrame<dim> frame = tile_frame(state.grid, range.slot);
+    const std::int32_t* entries = state.grid.tile(range.slot);
+    StepSums& sums = state.sums[static_cast<std::size_t>(thread)];
+    for (std::size_t b = range.begin; b < range.end; ++b) {
+      state.solid.prefetch(b + 2);
+      update_solid_batch(state, b, frame, entries, tile.record, sums);
+    }
+    for (auto& r : tile.record) r = Record{};
+  });
+}
+
+/// Share of its cell's gain that each pore-water point takes: outflow in proportion to its mass,
+/// inflow in proportion to the room it has (unsaturated) or to its pores. Exchanged water carries
+/// its momentum. Writes mass, velocity and pressure.
+template <class M>
+VADOSE_INLINE void exchange_batch(State<M>& state, std::size_t b,
+                                  const CellFinder<State<M>::dim>& cells,
+                                  const std::int32_t* entries,
+                                  const Lanes (&x)[State<M>::dim]) noexcept {
+  constexpr int dim = State<M>::dim;
+  auto& points = state.liquid;
+  double* mass = points.at(field::mass, b);
+  double* pressure = points.at(field::liquid_pressure, b);
+  const double* volume = points.at(field::volume, b);
+  const double* porosity = points.at(field::porosity, b);
+  for (int l = 0; l < lane_count; ++l) {
+    const std::int32_t owner = state.nodes.dof[static_cast<std::size_t>(entries[cells.index[l]])];
+    if (owner < 0) continue;
+    const auto& cell = state.nodes.cell[static_cast<std::size_t>(owner)];
+    Real p = cell.pressure;
+    if (cell.kind == CellKind::soil && volume[l] > 0) {
+      const Real pores = volume[l] * porosity[l];
+      Real dm;
+      if (cell.gain < 0) {
+        dm = cell.gain * mass[l] / cell.water;
+      } else {
+        const Real capacity = state.water.density * cell.pore_volume;
+        const Real room = capacity - cell.water;
+        // Room of the whole cell can be negative (compressed water) or too small: then by pores.
+        dm = is_unsaturated<M> && cell.pressure < 0 && room > cell.gain
+                 ? cell.gain * (state.water.density * pores - mass[l]) / room
+                 : cell.gain * pores / cell.pore_volume;
+      }
+      const Real after = mass[l] + dm;
+      for (int d = 0; d < dim; ++d) {
+        double& v = points.at(field::velocity, b, d)[l];
+        v = after > 0 ? (mass[l] * v + dm * cell.mean_velocity[d]) / after + cell.momentum_gain[d]
+                      : v;
+      }
+      mass[l] = after;
+      // The storage at the start of the step predicts the pressure; it only starts the search.
+      const Real squeezed = cell.rate * state.dt * cell.saturation * cell.pore_volume /
+                            max(cell.porosity, 1e-6);
+      p += (cell.gain / state.water.density - squeezed) / max(cell.storage, 1e-30);
+    }
+    for (int d = 0; d < dim; ++d)
+      p += state.water.density * state.gravity[d] * (x[d][l] - cell.centroid[d]);
+    if (!state.frozen) pressure[l] = p;
+  }
+}
+
+/// Free water: pressure by the rate of its cell, relaxed towards the cell's; volume from mass and
+/// pressure; exchange with the soil in proportion to mass.
+template <class M>
+VADOSE_INLINE void free_batch(State<M>& state, std::size_t b, const CellFinder<State<M>::dim>& cells,
+                              const std::int32_t* entries,
+                              const Lanes (&x)[State<M>::dim]) noexcept {
+  constexpr int dim = State<M>::dim;
+  auto& points = state.liquid;
+  double* mass = points.at(field::mass, b);
+  double* pressure = points.at(field::liquid_pressure, b);
+  double* volume = points.at(field::volume, b);
+  const Real bulk_modulus = state.water.bulk_modulus;
+  const Real keep = std::exp(-state.options.free_relaxation * state.dt);
+  for (int l = 0; l < lane_count; ++l) {
+    const std::int32_t owner = state.nodes.dof[static_cast<std::size_t>(entries[cells.index[l]])];
+    if (owner < 0 || !(volume[l] > 0)) continue;
+    const auto& cell = state.nodes.cell[static_cast<std::size_t>(owner)];
+    Real at_rest = cell.pressure;
+    for (int d = 0; d < dim; ++d)
+      at_rest += state.water.density * state.gravity[d] * (x[d][l] - cell.centroid[d]);
+    if (cell.kind == CellKind::free) {
+      if (!state.frozen)
+        pressure[l] = at_rest + keep * (pressure[l] - at_rest) -
+                      bulk_modulus * state.dt * cell.rate;
+      if (cell.gain != 0 && cell.water > 0) {
+        const Real dm = cell.gain * mass[l] / cell.water;
+        for (int d = 0; d < dim; ++d) points.at(field::velocity, b, d)[l] += cell.momentum_gain[d];
+        mass[l] += dm;
+      }
+    } else {
+      pressure[l] = at_rest;
+    }
+    volume[l] = mass[l] / (state.water.density * std::exp(pressure[l] / bulk_modulus));
+  }
+}
+
+/// One batch of liquid points: velocity from the liquid's nodes; pore water moves with the
+/// skeleton through the skeleton's shape functions, free water with the total volume flux.
+template <class M>
+VADOSE_INLINE void update_liquid_batch(State<M>& state, std::size_t b, int slot,
+                                       const TileFrame<State<M>::dim>& frame,
+                                       const std::int32_t* entries, const Record* liquid,
+                                       const Record* solid, StepSums& sums) noexcept {
+  constexpr int dim = State<M>::dim;
+  auto& points = state.liquid;
+  const bool is_free = points.group(b) == state.free_group();
+  Lanes x[dim], inside[dim], none[dim];
+  load_positions(points, b, x);
+  for (int d = 0; d < dim; ++d) {
+    inside[d] = x[d];
+    none[d] = Lanes(0.0);
+  }
+  CellFinder<dim> cells;
+  cells.find(frame, x);
+  into_pressure_cell(state, cells, entries, slot, inside);
+  Stencil<shape::Linear, dim> stencil;
+  stencil.evaluate(frame, inside, none);
+  PointMotion<dim> motion;
+  interpolate<is_viscous<M> || M::Transfer::stores_gradient>(stencil, liquid, motion);
+  update_velocity(state, points, b, stencil, frame, inside, liquid, motion);
+  if constexpr (is_viscous<M>) {
+    if (is_free) {
+      const Lanes hoop = motion.velocity[0] *
+                         over_radius<typename State<M>::Kinematics, dim>(x, Real(0));
+      const auto tau = state.fluid.viscous_stress(
+          rate_of_deformation<State<M>::stress_size>(motion.gradient, hoop));
+      for (int i = 0; i < State<M>::stress_size; ++i)
+        points.store(field::viscous_stress, b, i, tau[i]);
+    }
+  }
+  if (is_free) {
+    free_batch(state, b, cells, entries, x);
+    Lanes flux[dim];
+    for (int d = 0; d < dim; ++d) flux[d] = motion.velocity[d];
+    if constexpr (has_skeleton<M>) {
+      // Near soil the water moves with the total volume flux q: interpolated per point.
+      for (int l = 0; l < lane_count; ++l) {
+        Real q[dim] = {};
+        for_cube<dim>(0, 2, [&](const Index<dim>& i) {
+          int at = stencil.offset[l];
+          for (int d = 0; d < dim; ++d) at += i[d] * BlockGrid<dim>::tile_stride(d);
+          const Record& r = state.nodes.mixture[static_cast<std::size_t>(entries[at])];
+          for (int d = 0; d < dim; ++d) q[d] += stencil.product(i, l) * r[d];
+        });
+        for (int d = 0; d < dim; ++d) flux[d].set(l, q[d]);
+      }
+    }
+    move(state, points, b, "liquid", flux, sums);
+    return;
+  }
+  if constexpr (has_skeleton<M>) {
+    exchange_batch(state, b, cells, entries, x);
+    if constexpr (is_deformable<M>) {
+      Lanes half[dim];
+      load_half_sizes(points, b, half);
+      Stencil<typename M::Shape, dim> skeleton;
+      skeleton.evaluate(frame, x, half);
+      PointMotion<dim> carried;
+      interpolate<true>(skeleton, solid, carried);
+      Lanes trace = carried.velocity[0] * over_radius<typename State<M>::Kinematics, dim>(x, Real(0));
+      for (int d = 0; d < dim; ++d) trace += carried.gradient[d][d];
+      const Lanes rate = cell_rates(state, cells, entries, trace);
+      const Lanes stretch = exp(Lanes(state.dt) * rate);
+      points.store(field::volume, b, points.load(field::volume, b) * stretch);
+      const Lanes n = points.load(field::porosity, b);
+      points.store(field::porosity, b, Lanes(1.0) - (Lanes(1.0) - n) / stretch);
+      update_half_sizes(points, b, carried.gradient, state.dt, state.grid.cell_size());
+      move(state, points, b, "liquid", carried.velocity, sums);
+    }
+  }
+}
+
+/// Nodes to liquid points.
+template <class M>
+void update_liquid(State<M>& state) {
+  constexpr int dim = State<M>::dim;
+  for_blocks(state.liquid, state.options.threads, [&](const BatchRange& range, int thread) {
+    Tile<dim>& liquid = state.tile(thread, 0);
+    Tile<dim>& solid = state.tile(thread, 1);
+    liquid.read(state.grid, range.slot, state.nodes.liquid_out);
+    if constexpr (is_deformable<M>) solid.read(state.grid, range.slot, state.nodes.solid_out);
+    const TileFrame<dim> frame = tile_frame(state.grid, range.slot);
+    const std::int32_t* entries = state.grid.tile(range.slot);
+    StepSums& sums = state.sums[static_cast<std::size_t>(thread)];
+    for (std::size_t b = range.begin; b < range.end; ++b) {
+      state.liquid.prefetch(b + 2);
+      update_liquid_batch(state, b, range.slot, frame, entries, liquid.record, solid.record, sums);
+    }
+    for (auto& r : liquid.record) r = Record{};
+    for (auto& r : solid.record) r = Record{};
+  });
+}
+
+/// Carries the loads with the ground (hat functions).
+template <class M>
+void move_loads(State<M>& state) {
+  constexpr int dim = State<M>::dim;
+  const Real h = state.grid.cell_size();
+  for (auto& load : state.loads) {
+    Index<dim> cell;
+    Real xi[dim];
+    for (int d = 0; d < dim; ++d) {
+      cell[d] = state.grid.cell_of(load.position[d], d);
+      xi[d] = (load.position[d] - state.grid.origin()[d]) / h - cell[d];
+    }
+    Vec<dim> v = Vec<dim>::Zero();
+    for_cube<dim>(0, 2, [&](const Index<dim>& corner) {
+      Index<dim> node = cell;
+      Real w = 1;
+      for (int d = 0; d < dim; ++d) {
+        node[d] += corner[d];
+        w *= corner[d] ? xi[d] : 1 - xi[d];
+      }
+      const std::int32_t e = state.grid.entry(node);
+      for (int d = 0; d < dim; ++d) v[d] += w * state.nodes.solid_out[static_cast<std::size_t>(e)][d];
+    });
+    load.position += state.dt * v;
+  }
+}
+
+}  // namespace vadose::kernel

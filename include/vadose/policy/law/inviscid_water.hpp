@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+namespace vadose::law {
+
+/// Water without viscous stress: its whole stress is the liquid pressure. Models recognise it by
+/// `inviscid` and compute nothing.
+struct InviscidWater {
+  static constexpr bool inviscid = true;
+
+  /// Nothing to check.
+  void validate() const {}
+};
+
+}  // namespace vadose::law

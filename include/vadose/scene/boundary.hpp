@@ -1,0 +1,280 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+/// \file
+/// Boundary conditions as plain values. Scene::add() checks them; the solver turns them into lists
+/// of nodes, points and faces.
+
+#include <functional>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <variant>
+
+#include <vadose/core/error.hpp>
+#include <vadose/grid/region.hpp>
+
+namespace vadose {
+
+/// Side of the domain. 1D: bottom, top (the coordinate points up). 2D: left, right (x or r),
+/// bottom, top (y or z). 3D: left, right (x), front, back (y), bottom, top (z, up).
+enum class Face : unsigned char { left, right, front, back, bottom, top };
+
+/// Default of a mandatory face; every check rejects it.
+inline constexpr Face unset_face = static_cast<Face>(255);
+
+/// Coordinate that is constant on `face` in `dim` dimensions; -1 if there is no such face.
+constexpr int axis(Face face, int dim) noexcept {
+  switch (face) {
+    case Face::left:
+    case Face::right:
+      return dim >= 2 ? 0 : -1;
+    case Face::front:
+    case Face::back:
+      return dim == 3 ? 1 : -1;
+    case Face::bottom:
+    case Face::top:
+      return dim - 1;
+  }
+  return -1;
+}
+
+/// 0: the face has the smallest coordinate along its axis, 1: the largest.
+constexpr int side(Face face) noexcept {
+  return face == Face::right || face == Face::back || face == Face::top ? 1 : 0;
+}
+
+/// Name of a face for messages.
+constexpr const char* name(Face face) noexcept {
+  constexpr const char* names[] = {"left", "right", "front", "back", "bottom", "top"};
+  return static_cast<int>(face) < 6 ? names[static_cast<int>(face)] : "(missing)";
+}
+
+/// A Region of any dimension, or nothing (= everywhere). Region<Dim> converts to it.
+class AnyRegion {
+ public:
+  AnyRegion() = default;
+  template <int Dim>
+  AnyRegion(Region<Dim> region)  // NOLINT(google-explicit-constructor): a region is a region
+      : region_(std::move(region)) {}
+
+  /// A region was given.
+  bool given() const noexcept { return region_.index() != 0; }
+  /// Dimension of the region given, else 0.
+  int dim() const noexcept { return static_cast<int>(region_.index()); }
+  /// The region, nullptr if none of this dimension was given.
+  template <int Dim>
+  const Region<Dim>* get() const noexcept {
+    return std::get_if<Region<Dim>>(&region_);
+  }
+  /// x is in the region, or no region was given.
+  template <int Dim>
+  bool contains(const Vec<Dim>& x) const {
+    const Region<Dim>* region = get<Dim>();
+    return region ? region->contains(x) : !given();
+  }
+
+ private:
+  std::variant<std::monostate, Region<1>, Region<2>, Region<3>> region_;
+};
+
+/// Factor [-] as a function of time [s]; an empty one is 1 at all times.
+using TimeFactor = std::function<Real(Real)>;
+
+namespace check {
+
+/// The face exists in `dim` dimensions.
+inline void face(Face face, int dim) {
+  if (axis(face, dim) >= 0) return;
+  const char* allowed = dim == 1   ? "{bottom, top}"
+                        : dim == 2 ? "{left, right, bottom, top}"
+                                   : "{left, right, front, back, bottom, top}";
+  throw SetupError("face = " + std::string(name(face)) + " outside " + allowed + " [-]");
+}
+
+/// No region, or one of `dim` dimensions.
+inline void region(const AnyRegion& region, int dim) {
+  if (region.given() && region.dim() != dim)
+    fail("region dimension", region.dim(), "{" + std::to_string(dim) + "}", "-");
+}
+
+/// A region of `dim` dimensions.
+inline void required_region(const AnyRegion& given, int dim) {
+  if (!given.given()) throw SetupError("region = (missing), allowed: one Region [m]");
+  region(given, dim);
+}
+
+/// Empty, or finite at t = 0.
+inline void time_factor(const TimeFactor& factor) {
+  if (factor) finite("time_factor(0 s)", factor(0), "-");
+}
+
+/// Exactly one of several alternatives was given.
+inline void exactly_one(int given, std::string_view alternatives, std::string_view unit) {
+  if (given != 1)
+    fail("number of given " + std::string(alternatives) + " (units " + std::string(unit) + ")",
+         given, "{1}", "-");
+}
+
+/// One or none of several alternatives was given.
+inline void at_most_one(int given, std::string_view alternatives) {
+  if (given > 1) fail("number of given " + std::string(alternatives), given, "{0, 1}", "-");
+}
+
+}  // namespace check
+
+/// Boundary conditions. `region` limits a condition to a part of the face, by node position.
+namespace bc {
+
+/// Rough rigid wall: no velocity of the solid, no flow of liquid through it.
+struct Fixed {
+  static constexpr const char* name = "bc::Fixed";
+  Face face = unset_face;  ///< side of the domain
+  AnyRegion region = {};   ///< part of it; all of it by default
+
+  void validate(int dim) const {
+    check::face(face, dim);
+    check::region(region, dim);
+  }
+};
+
+/// Smooth rigid wall: no velocity along its normal, free along it.
+struct Roller {
+  static constexpr const char* name = "bc::Roller";
+  Face face = unset_face;  ///< side of the domain
+  AnyRegion region = {};   ///< part of it; all of it by default
+
+  void validate(int dim) const {
+    check::face(face, dim);
+    check::region(region, dim);
+  }
+};
+
+/// Rigid wall with Coulomb friction: |shear force| <= friction_coefficient x normal force of the
+/// solid while it is pressed against the wall.
+struct Frictional {
+  static constexpr const char* name = "bc::Frictional";
+  Face face = unset_face;             ///< side of the domain
+  Real friction_coefficient = unset;  ///< mu [-], >= 0
+  AnyRegion region = {};              ///< part of it; all of it by default
+
+  void validate(int dim) const {
+    check::face(face, dim);
+    check::non_negative("friction_coefficient", friction_coefficient, "-");
+    check::region(region, dim);
+  }
+};
+
+/// Load on the solid points of a region at set-up (a layer at the surface); the points keep it
+/// while they move. Give `traction` or `normal_pressure`.
+template <int Dim>
+struct Traction {
+  static constexpr const char* name = "bc::Traction";
+  AnyRegion region = {};                          ///< surface points, mandatory
+  Vec<Dim> traction = Vec<Dim>::Constant(unset);  ///< force per area [Pa], in grid axes
+  Real normal_pressure = unset;                   ///< pressure on the surface [Pa], compression +
+  TimeFactor time_factor = {};                    ///< multiplies the load [-] at time t [s]
+
+  void validate(int dim) const {
+    check::required_region(region, dim);
+    check::exactly_one(int(has_vector()) + int(has_pressure()), "traction, normal_pressure", "Pa");
+    if (has_pressure()) check::finite("normal_pressure", normal_pressure, "Pa");
+    for (int d = 0; has_vector() && d < Dim; ++d)
+      check::finite("traction " + check::axis_name(d), traction[d], "Pa");
+    check::time_factor(time_factor);
+  }
+  /// The load is `normal_pressure`.
+  bool has_pressure() const noexcept { return normal_pressure == normal_pressure; }
+  /// The load is `traction`.
+  bool has_vector() const noexcept { return !traction.array().isNaN().all(); }
+  /// Factor of the load at time t [s].
+  Real factor(Real t) const { return time_factor ? time_factor(t) : 1; }
+};
+
+/// Velocity of the solid at the nodes of a region. A component that is NaN (unset) stays free.
+template <int Dim>
+struct PrescribedVelocity {
+  static constexpr const char* name = "bc::PrescribedVelocity";
+  AnyRegion region = {};                          ///< nodes, mandatory
+  Vec<Dim> velocity = Vec<Dim>::Constant(unset);  ///< [m/s]; unset: free
+  TimeFactor time_factor = {};                    ///< multiplies the velocity [-] at time t [s]
+
+  void validate(int dim) const {
+    check::required_region(region, dim);
+    int given = 0;
+    for (int d = 0; d < Dim; ++d) {
+      if (!prescribes(d)) continue;
+      check::finite("velocity " + check::axis_name(d), velocity[d], "m/s");
+      ++given;
+    }
+    if (given == 0) check::fail("velocity", unset, "(-inf, inf) in one component or more", "m/s");
+    check::time_factor(time_factor);
+  }
+  /// The component along `direction` is prescribed.
+  bool prescribes(int direction) const { return velocity[direction] == velocity[direction]; }
+  /// Factor of the velocity at time t [s].
+  Real factor(Real t) const { return time_factor ? time_factor(t) : 1; }
+};
+
+/// No liquid flows through the face. This is what every face does without a liquid condition; it
+/// can be written to say so.
+struct Impermeable {
+  static constexpr const char* name = "bc::Impermeable";
+  Face face = unset_face;  ///< side of the domain
+
+  void validate(int dim) const { check::face(face, dim); }
+};
+
+/// Liquid pressure held at a face, at a region, or at the part of a face that is in the region.
+/// Give `pressure` or `function`.
+template <int Dim>
+struct PrescribedPressure {
+  static constexpr const char* name = "bc::PrescribedPressure";
+  Face face = unset_face;                                    ///< side of the domain
+  AnyRegion region = {};                                     ///< or region
+  Real pressure = unset;                                     ///< p [Pa], compression +
+  std::function<Real(const Vec<Dim>&, Real)> function = {};  ///< p(x [m], t [s]) [Pa]
+
+  void validate(int dim) const {
+    if (face == unset_face && !region.given())
+      throw SetupError("face = (missing), region = (missing), allowed: one or both [m]");
+    if (face != unset_face) check::face(face, dim);
+    check::region(region, dim);
+    check::exactly_one(int(pressure == pressure) + int(static_cast<bool>(function)),
+                       "pressure, function", "Pa");
+    if (!function) check::finite("pressure", pressure, "Pa");
+  }
+  /// Pressure [Pa] held at x [m] at time t [s].
+  Real at(const Vec<Dim>& x, Real t) const { return function ? function(x, t) : pressure; }
+};
+
+/// Drained wall: PrescribedPressure of 0 Pa.
+struct Drained {
+  static constexpr const char* name = "bc::Drained";
+  Face face = unset_face;  ///< side of the domain
+  AnyRegion region = {};   ///< or region
+
+  /// The same condition as a prescribed pressure.
+  template <int Dim>
+  PrescribedPressure<Dim> prescribed() const {
+    return {.face = face, .region = region, .pressure = 0};
+  }
+  void validate(int dim) const {
+    if (face == unset_face && !region.given())
+      throw SetupError("face = (missing), region = (missing), allowed: one or both [m]");
+    if (face != unset_face) check::face(face, dim);
+    check::region(region, dim);
+  }
+};
+
+/// Liquid pressure held at 0 at the current ground surface, wherever it has moved to: the paper's
+/// rain, [Zhan] 4.4. Water is supplied without limit and counted as inflow.
+struct ZeroSuction {
+  static constexpr const char* name = "bc::ZeroSuction";
+  AnyRegion region = {};  ///< part of the surface; all of it by default
+
+  void validate(int dim) const { check::region(region, dim); }
+};
+
+}  // namespace bc
+}  // namespace vadose

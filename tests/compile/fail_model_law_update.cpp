@@ -1,0 +1,23 @@
+// expect: vadose: Skeleton needs `Status update\(
+// SPDX-License-Identifier: MIT
+#include <vadose/model/check_model.hpp>
+
+struct Law {
+  struct State {};
+#ifndef VADOSE_SHOULD_FAIL
+  template <int N>
+  vadose::Status update(const vadose::StrainStep<vadose::Real, N>& /*step*/,
+                        vadose::SymTensor<vadose::Real, N>& /*stress*/, State& /*state*/) const {
+    return vadose::Status::ok;
+  }
+#endif
+  vadose::Real p_wave_modulus(const State& /*state*/) const {
+    return 1;
+  }
+  void validate() const {}
+};
+
+struct Soil : vadose::UnsaturatedModel<vadose::PlaneStrain> {
+  using Skeleton = Law;
+};
+static_assert(vadose::CheckModel<Soil>::ok);

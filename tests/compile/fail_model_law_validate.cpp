@@ -1,0 +1,21 @@
+// expect: vadose: Skeleton needs `void validate\(\)
+// SPDX-License-Identifier: MIT
+#include <vadose/model/check_model.hpp>
+
+struct Law {
+  struct State {};
+  template <int N>
+  vadose::Status update(const vadose::StrainStep<vadose::Real, N>& /*step*/,
+                        vadose::SymTensor<vadose::Real, N>& /*stress*/, State& /*state*/) const {
+    return vadose::Status::ok;
+  }
+  vadose::Real p_wave_modulus(const State& /*state*/) const { return 1; }
+#ifndef VADOSE_SHOULD_FAIL
+  void validate() const {}
+#endif
+};
+
+struct Soil : vadose::UnsaturatedModel<vadose::PlaneStrain> {
+  using Skeleton = Law;
+};
+static_assert(vadose::CheckModel<Soil>::ok);

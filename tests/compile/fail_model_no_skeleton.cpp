@@ -1,0 +1,17 @@
+// expect: vadose: the model has no alias Skeleton
+// SPDX-License-Identifier: MIT
+#include <vadose/model/check_model.hpp>
+
+struct Soil {
+  using Kinematics = vadose::PlaneStrain;
+  using Shape = vadose::shape::Gimp;
+  using Transfer = vadose::transfer::Flip;
+#ifndef VADOSE_SHOULD_FAIL
+  using Skeleton = vadose::law::LinearElastic;
+#endif
+  using Liquid = vadose::law::InviscidWater;
+  using Retention = vadose::swrc::AlwaysSaturated;
+  using Conductivity = vadose::conductivity::KozenyCarman;
+  using Drag = vadose::drag::Darcy;
+};
+static_assert(vadose::CheckModel<Soil>::ok);

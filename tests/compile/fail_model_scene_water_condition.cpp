@@ -1,0 +1,12 @@
+// expect: vadose: this boundary condition acts on soil
+// SPDX-License-Identifier: MIT
+#include <vadose/scene/scene.hpp>
+
+using Soil = vadose::FreeWaterModel<vadose::PlaneStrain>;
+
+void use(vadose::Scene<Soil>& scene) {
+  scene.validate();
+#ifdef VADOSE_SHOULD_FAIL
+  scene.add(vadose::bc::ZeroSuction{});
+#endif
+}

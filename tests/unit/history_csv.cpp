@@ -1,0 +1,129 @@
+// SPDX-License-Identifier: MIT
+// History files: on disk after every row, numbers read back bit for bit.
+
+#include <doctest/doctest.h>
+#include <bit>
+#include <cstdint>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <limits>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include <vadose/io/history.hpp>
+
+namespace {
+
+namespace io = vadose::io;
+using vadose::Real;
+
+std::string history_path(const std::string& name) {
+  return (std::filesystem::temp_directory_path() / ("vadose_history_" + name)).string();
+}
+
+std::vector<std::string> lines_of(const std::string& path) {
+  std::ifstream in(path);
+  std::vector<std::string> lines;
+  for (std::string line; std::getline(in, line);) lines.push_back(line);
+  return lines;
+}
+
+std::vector<Real> numbers_of(const std::string& line) {
+  std::vector<Real> numbers;
+  std::istringstream in(line);
+  for (std::string cell; std::getline(in, cell, ',');)
+    numbers.push_back(std::strtod(cell.c_str(), nullptr));
+  return numbers;
+}
+
+template <class F>
+std::string history_error(F&& f) {
+  try {
+    f();
+  } catch (const io::OutputError& error) {
+    return error.what();
+  }
+  return "(no error)";
+}
+
+}  // namespace
+
+TEST_CASE("history: head and rows are on disk at once and read back bit for bit") {
+  const std::string path = history_path("rows.csv");
+  {
+    io::History history(path, {{"time", "s"}, {"settlement", "m"}, {"liquid_pressure", "Pa"}});
+    REQUIRE(lines_of(path).size() == 1);
+    CHECK(lines_of(path)[0] == "time [s],settlement [m],liquid_pressure [Pa]");
+    const std::vector<std::vector<Real>> rows = {
+        {0.0, -0.0, 1.0 / 3},
+        {0.1, 5e-324, -std::numeric_limits<Real>::max()},
+        {0.1 + 0.2, 1e-17, std::numeric_limits<Real>::infinity()},
+    };
+    for (std::size_t r = 0; r < rows.size(); ++r) {
+      history.add(rows[r]);
+      const auto lines = lines_of(path);  // while the file is still open
+      REQUIRE(lines.size() == r + 2);
+      const auto numbers = numbers_of(lines[r + 1]);
+      REQUIRE(numbers.size() == 3);
+      for (std::size_t i = 0; i < 3; ++i)
+        CHECK(std::bit_cast<std::uint64_t>(numbers[i]) == std::bit_cast<std::uint64_t>(rows[r][i]));
+    }
+    history.add({1, 2, vadose::unset});
+    CHECK(lines_of(path)[4] == "1,2,nan");
+  }
+  CHECK(lines_of(path).size() == 5);
+  std::filesystem::remove(path);
+}
+
+TEST_CASE("history: wrong rows, wrong names and unwritable paths are refused") {
+  const std::string path = history_path("wrong.csv");
+  {
+    io::History history(path, {{"time", "s"}, {"inflow", "kg"}});
+    const std::string message = history_error([&] { history.add({1.0}); });
+    CHECK(message.find("row has 1 values, expected 2") != std::string::npos);
+    CHECK(message.find(path) != std::string::npos);
+    CHECK(lines_of(path).size() == 1);
+  }
+  std::filesystem::remove(path);
+  CHECK(history_error([&] {
+          io::History(path, {{"a,b", "m"}});
+        }).find("a,b [m]") != std::string::npos);
+  CHECK(history_error([&] {
+          io::History(path, {{"", "m"}});
+        }).find("is empty") != std::string::npos);
+  CHECK(history_error([&] { io::History(path, std::vector<io::Quantity>{}); }).find("no columns") !=
+        std::string::npos);
+  CHECK_FALSE(std::filesystem::exists(path));
+  const std::string below = "/dev/null/history.csv";
+  CHECK(history_error([&] {
+          io::History(below, {{"time", "s"}});
+        }).find("/dev/null") != std::string::npos);
+}
+
+TEST_CASE("history: files append, move and tell that they are closed") {
+  const std::string path = history_path("file.txt");
+  std::filesystem::remove(path);
+  io::File first(path);
+  first.print("%d-%s\n", 7, "x");
+  io::File second(std::move(first));
+  CHECK_FALSE(first.is_open());
+  second.write("y\n");
+  second.close();
+  second.close();
+  CHECK(history_error([&] { second.write("z"); }).find("it is closed") != std::string::npos);
+  {
+    io::File more(path, true);
+    more.write("z\n");
+  }
+  CHECK(lines_of(path) == std::vector<std::string>{"7-x", "y", "z"});
+  {
+    // nothing is put in place without commit
+    io::ReplacingFile replacing(path);
+    replacing.file().write("other");
+  }
+  CHECK(lines_of(path).size() == 3);
+  CHECK_FALSE(std::filesystem::exists(path + ".part"));
+  std::filesystem::remove(path);
+}
