@@ -3,7 +3,7 @@
 
 #include <cmath>
 #include <random>
-#include <string>
+#include <utility>
 
 #include <vadose/core/error.hpp>
 #include <vadose/policy/drag/darcy.hpp>

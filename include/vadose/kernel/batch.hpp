@@ -36,11 +36,9 @@ struct CellFinder {
     Lanes at(0.0);
     double stride = 1;
     for (int d = 0; d < Dim; ++d) {
-      const Lanes u =
-          floor((x[d] - Lanes(frame.first[d])) * Lanes(frame.over_cell_size));
+      const Lanes u = floor((x[d] - Lanes(frame.first[d])) * Lanes(frame.over_cell_size));
       const Lanes low(max(frame.low_wall[d], 0.0));
-      const Lanes high(
-          min(frame.high_wall[d] - 1, static_cast<double>(Block<Dim>::tile_edge - 1)));
+      const Lanes high(min(frame.high_wall[d] - 1, static_cast<double>(Block<Dim>::tile_edge - 1)));
       at += min(select(u > low, u, low), high) * Lanes(stride);
       stride *= Block<Dim>::tile_edge;
     }

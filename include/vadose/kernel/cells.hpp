@@ -205,7 +205,8 @@ std::int32_t sliver_target(const CellView<M>& view) noexcept {
     Real fill[2] = {0, 0};
     for (int side = 0; side < 2; ++side)
       if (view.has_neighbour(d, 2 * side - 1))
-        fill[side] = min(1.0, cells[static_cast<std::size_t>(view.neighbour(d, 2 * side - 1))].fill);
+        fill[side] =
+            min(1.0, cells[static_cast<std::size_t>(view.neighbour(d, 2 * side - 1))].fill);
     for (int side = 0; side < 2; ++side) {
       if (!view.has_neighbour(d, 2 * side - 1)) continue;
       const std::int32_t n = view.neighbour(d, 2 * side - 1);
@@ -275,8 +276,7 @@ void gather_cell(State<M>& state, const CellView<M>& view) {
     (Lanes::load(pore.value) + Lanes::load(nodes.pore[i].value)).store(pore.value);
     (Lanes::load(free.value) + Lanes::load(nodes.free[i].value)).store(free.value);
     if (state.soils.size() > 1)
-      (Lanes::load(materials.value) + Lanes::load(nodes.materials[i].value))
-          .store(materials.value);
+      (Lanes::load(materials.value) + Lanes::load(nodes.materials[i].value)).store(materials.value);
     wet += wet_volume(nodes, m);
     fill += nodes.cell[i].fill;
     ++members;
@@ -308,12 +308,12 @@ void gather_cell(State<M>& state, const CellView<M>& view) {
   cell.fill = full ? 1 : fill;
   cell.quad_volume = full ? view.volume() : wet;
   for (int d = 0; d < dim; ++d) {
-    const Real mixed = (pore[lane::bulk_volume] * (pore[lane::pore_volume] > 0
-                                                       ? pore[lane::pore_position + d] /
-                                                             pore[lane::pore_volume]
-                                                       : 0.0) +
-                        free[lane::free_position + d]) /
-                       wet;
+    const Real mixed =
+        (pore[lane::bulk_volume] * (pore[lane::pore_volume] > 0
+                                        ? pore[lane::pore_position + d] / pore[lane::pore_volume]
+                                        : 0.0) +
+         free[lane::free_position + d]) /
+        wet;
     cell.quad_point[d] = full ? view.centre(d) : mixed;
   }
 }

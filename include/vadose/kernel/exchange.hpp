@@ -71,12 +71,10 @@ void find_flux(State<M>& state, const CellView<M>& view, int axis, FaceFlux& fac
   mean_gradient /= corners;
   Real flux = face.saturation * velocity;
   if (face.kind == FaceKind::inside) {
-    const std::int32_t up_entry =
-        face.head_gradient > 0 ? view.entry() : view.neighbour(axis, -1);
-    const auto& up = nodes.cell[static_cast<std::size_t>(
-        nodes.dof[static_cast<std::size_t>(up_entry)])];
-    flux -= face_mobility(state, face, up.porosity,
-                          state.soils[up.material].material.unit_weight) *
+    const std::int32_t up_entry = face.head_gradient > 0 ? view.entry() : view.neighbour(axis, -1);
+    const auto& up =
+        nodes.cell[static_cast<std::size_t>(nodes.dof[static_cast<std::size_t>(up_entry)])];
+    flux -= face_mobility(state, face, up.porosity, state.soils[up.material].material.unit_weight) *
             (face.head_gradient - mean_gradient);
   }
   face.flux = face.area * flux;
@@ -96,14 +94,15 @@ Cell<State<M>::dim>* donor(State<M>& state, const CellView<M>& view, int axis,
 template <class M>
 void find_fluxes(State<M>& state) {
   constexpr int dim = State<M>::dim;
-  for_cells(state.grid, state.options.threads,
-            [&](std::int32_t e, const Index<dim>& local, int slot, int) {
-              const CellView<M> view(state, local, slot);
-              for (int d = 0; d < dim; ++d)
-                find_flux(state, view, d,
-                          state.nodes.face[static_cast<std::size_t>(e) * dim +
-                                           static_cast<std::size_t>(d)]);
-            });
+  for_cells(
+      state.grid, state.options.threads,
+      [&](std::int32_t e, const Index<dim>& local, int slot, int) {
+        const CellView<M> view(state, local, slot);
+        for (int d = 0; d < dim; ++d)
+          find_flux(
+              state, view, d,
+              state.nodes.face[static_cast<std::size_t>(e) * dim + static_cast<std::size_t>(d)]);
+      });
 }
 
 /// One face of a pressure cell as seen from it: flux into the cell [m3/s] and the cell beyond.
@@ -130,7 +129,8 @@ void for_inflows(const State<M>& state, const CellView<M>& view, F&& f) {
       --below[d];
       ++above[d];
       const std::int32_t ea = state.grid.entry(above);
-      const FaceFlux& low = nodes.face[static_cast<std::size_t>(e) * dim + static_cast<std::size_t>(d)];
+      const FaceFlux& low =
+          nodes.face[static_cast<std::size_t>(e) * dim + static_cast<std::size_t>(d)];
       const FaceFlux& high =
           nodes.face[static_cast<std::size_t>(ea) * dim + static_cast<std::size_t>(d)];
       if (low.flux != 0) f(Inflow<dim>{low.flux, other(state.grid.entry(below)), &low});
@@ -173,31 +173,31 @@ void find_gains(State<M>& state) {
   const std::size_t held = state.held.size();
   auto& nodes = state.nodes;
   nodes.ledger_in.assign(static_cast<std::size_t>(state.grid.slots()) * 2 * held, 0);
-  for_cells(
-      state.grid, state.options.threads,
-      [&](std::int32_t e, const Index<dim>& local, int slot, int) {
-        if (nodes.dof[static_cast<std::size_t>(e)] != e) return;
-        auto& cell = nodes.cell[static_cast<std::size_t>(e)];
-        const CellView<M> view(state, local, slot);
-        Real momentum[dim] = {};
-        cell.gain = 0;
-        for_inflows(state, view, [&](const Inflow<dim>& f) {
-          const Real limit = f.flux < 0 ? cell.limit : f.from ? f.from->limit : 1;
-          const Real dm = mass_per_flux * limit * f.flux;
-          cell.gain += dm;
-          if (dm > 0 && f.from)
-            for (int d = 0; d < dim; ++d)
-              momentum[d] += dm * (f.from->mean_velocity[d] - cell.mean_velocity[d]);
-          if (!f.from && f.face->held >= 0) {
-            const std::size_t at = (static_cast<std::size_t>(slot) * held +
-                                    static_cast<std::size_t>(f.face->held)) * 2;
-            nodes.ledger_in[at + (dm > 0 ? 0 : 1)] += std::fabs(dm);
-          }
-        });
-        const Real after = cell.water + cell.gain;
-        for (int d = 0; d < dim; ++d)
-          cell.momentum_gain[d] = after > 0 ? momentum[d] / after : 0;
-      });
+  for_cells(state.grid, state.options.threads,
+            [&](std::int32_t e, const Index<dim>& local, int slot, int) {
+              if (nodes.dof[static_cast<std::size_t>(e)] != e) return;
+              auto& cell = nodes.cell[static_cast<std::size_t>(e)];
+              const CellView<M> view(state, local, slot);
+              Real momentum[dim] = {};
+              cell.gain = 0;
+              for_inflows(state, view, [&](const Inflow<dim>& f) {
+                const Real limit = f.flux < 0 ? cell.limit : f.from ? f.from->limit : 1;
+                const Real dm = mass_per_flux * limit * f.flux;
+                cell.gain += dm;
+                if (dm > 0 && f.from)
+                  for (int d = 0; d < dim; ++d)
+                    momentum[d] += dm * (f.from->mean_velocity[d] - cell.mean_velocity[d]);
+                if (!f.from && f.face->held >= 0) {
+                  const std::size_t at = (static_cast<std::size_t>(slot) * held +
+                                          static_cast<std::size_t>(f.face->held)) *
+                                         2;
+                  nodes.ledger_in[at + (dm > 0 ? 0 : 1)] += std::fabs(dm);
+                }
+              });
+              const Real after = cell.water + cell.gain;
+              for (int d = 0; d < dim; ++d)
+                cell.momentum_gain[d] = after > 0 ? momentum[d] / after : 0;
+            });
   for (std::size_t h = 0; h < held; ++h)
     for (std::size_t s = 0; s < static_cast<std::size_t>(state.grid.slots()); ++s) {
       state.held[h].inflow += nodes.ledger_in[(s * held + h) * 2];

@@ -14,7 +14,8 @@ void find_conductivities(State<M>& state) {
   for_pressure_cells(state, [&](Cell<State<M>::dim>& cell, std::int32_t, int) {
     if (cell.kind != CellKind::soil) return;
     const auto& material = state.soils[cell.material].material;
-    cell.saturated_conductivity = conductivity::value<Real>(material.conductivity, 1, cell.porosity);
+    cell.saturated_conductivity =
+        conductivity::value<Real>(material.conductivity, 1, cell.porosity);
     cell.conductivity = cell.saturated_conductivity;
     if constexpr (is_unsaturated<M>) {
       if (cell.saturation < 1)
@@ -34,7 +35,7 @@ Real face_conductivity(const State<M>& state, int material, Real upstream, Real 
     if (p_a >= 0 && p_b >= 0) return upstream;
     const Real mean =
         state.soils[static_cast<std::size_t>(material)].kirchhoff->mean(p_a, p_b, porosity);
-    return blend(upstream, mean, gravity_head, p_b - p_a);
+    return blend_conductivity<Real>(upstream, mean, gravity_head, p_b - p_a);
   } else {
     return upstream;
   }
@@ -67,9 +68,8 @@ void inside_face(const State<M>& state, int axis, const Cell<State<M>::dim>& a,
   face.kind = FaceKind::inside;
   face.head_gradient = drop / distance;
   face.saturation = up.saturation;
-  face.conductivity =
-      face_conductivity(state, up.material, up.conductivity, a.pressure, b.pressure, up.porosity,
-                        gravity_head(state, axis, distance));
+  face.conductivity = face_conductivity(state, up.material, up.conductivity, a.pressure, b.pressure,
+                                        up.porosity, gravity_head(state, axis, distance));
 }
 
 /// Face between soil and a held pressure (free water, an open surface or a wall) at x_face along
@@ -84,8 +84,8 @@ void outer_face(const State<M>& state, int axis, const Cell<State<M>::dim>& soil
   const bool enters = inward > 0;
   face.saturation = enters ? 1 : soil.saturation;
   face.conductivity = face_conductivity(
-      state, soil.material, enters ? soil.saturated_conductivity : soil.conductivity,
-      soil.pressure, pressure, soil.porosity, gravity_head(state, axis, distance));
+      state, soil.material, enters ? soil.saturated_conductivity : soil.conductivity, soil.pressure,
+      pressure, soil.porosity, gravity_head(state, axis, distance));
   face.held_pressure = pressure;
 }
 
@@ -100,8 +100,7 @@ Vec<State<M>::dim> face_centre(const CellView<M>& view, int axis) {
 
 /// Index of the held pressure at a wall (axis, side) or at the surface (axis -1); -1: none.
 template <class M>
-std::int16_t find_held(const State<M>& state, int axis, int side,
-                       const Vec<State<M>::dim>& x) {
+std::int16_t find_held(const State<M>& state, int axis, int side, const Vec<State<M>::dim>& x) {
   for (std::size_t i = 0; i < state.held.size(); ++i) {
     const auto& held = state.held[i];
     if (held.face_axis == axis && (axis < 0 || held.face_side == side) && held.contains(x))
@@ -147,8 +146,7 @@ void wall_face(const State<M>& state, const CellView<M>& view, int axis, int sid
 /// Face between soil and free water.
 template <class M>
 void water_face(const State<M>& state, const CellView<M>& view, int axis,
-                const Cell<State<M>::dim>& soil, const Cell<State<M>::dim>& free,
-                FaceFlux& face) {
+                const Cell<State<M>::dim>& soil, const Cell<State<M>::dim>& free, FaceFlux& face) {
   face.kind = FaceKind::to_free;
   Real at[State<M>::dim];
   for (int d = 0; d < State<M>::dim; ++d) at[d] = soil.centroid[d];

@@ -23,16 +23,16 @@ inline constexpr int volume = 7;    ///< bulk volume of the skeleton [m3]
 inline constexpr int velocity = 0;   ///< first of three, new velocity [m/s]
 inline constexpr int increment = 4;  ///< first of three, change of velocity [m/s]
 // Sums over the pore-water points of a cell:
-inline constexpr int bulk_volume = 0;     ///< V [m3]
-inline constexpr int water = 1;           ///< m [kg]
-inline constexpr int pore_volume = 2;     ///< n V [m3]
-inline constexpr int pore_pressure = 3;   ///< n V p [J]
-inline constexpr int pore_position = 4;   ///< first of three, n V x [m4]
+inline constexpr int bulk_volume = 0;    ///< V [m3]
+inline constexpr int water = 1;          ///< m [kg]
+inline constexpr int pore_volume = 2;    ///< n V [m3]
+inline constexpr int pore_pressure = 3;  ///< n V p [J]
+inline constexpr int pore_position = 4;  ///< first of three, n V x [m4]
 // Sums over the free-water points of a cell:
-inline constexpr int free_volume = 0;     ///< V [m3]
-inline constexpr int free_water = 1;      ///< m [kg]
-inline constexpr int free_pressure = 3;   ///< V p [J]
-inline constexpr int free_position = 4;   ///< first of three, V x [m4]
+inline constexpr int free_volume = 0;    ///< V [m3]
+inline constexpr int free_water = 1;     ///< m [kg]
+inline constexpr int free_pressure = 3;  ///< V p [J]
+inline constexpr int free_position = 4;  ///< first of three, V x [m4]
 // Second record of a cell: liquid momentum, then water content and storage at a trial pressure.
 inline constexpr int content = 4;  ///< sum V theta(p) [m3]
 inline constexpr int storage = 5;  ///< sum V d(theta)/dp [m3/Pa]
@@ -48,26 +48,26 @@ enum class CellKind : std::uint8_t {
 /// Pressure unknown of a cell and its surroundings.
 template <int Dim>
 struct Cell {
-  Real pressure = 0;          ///< p_c at the centroid [Pa]
-  Real saturation = 0;        ///< S_c = M_c / (rho_l sum n V), at most 1
-  Real porosity = 1;          ///< pore-weighted mean n
-  Real pore_volume = 0;       ///< sum n V [m3]
-  Real soil_share = 0;        ///< bulk volume of soil / water-bearing volume [-]
-  Real conductivity = 0;      ///< k(S_c, n) [m/s]
+  Real pressure = 0;                ///< p_c at the centroid [Pa]
+  Real saturation = 0;              ///< S_c = M_c / (rho_l sum n V), at most 1
+  Real porosity = 1;                ///< pore-weighted mean n
+  Real pore_volume = 0;             ///< sum n V [m3]
+  Real soil_share = 0;              ///< bulk volume of soil / water-bearing volume [-]
+  Real conductivity = 0;            ///< k(S_c, n) [m/s]
   Real saturated_conductivity = 0;  ///< k(1, n) [m/s]
-  Real water = 0;             ///< M_c [kg]
-  Real storage = 0;           ///< sum V d(theta)/dp [m3/Pa]
-  Real low = 0, high = 0;     ///< bracket of the pressure while it is sought [Pa]
-  Real centroid[Dim] = {};    ///< of the water-bearing volume [m]
-  Real quad_volume = 0;       ///< volume the pressure acts in, f V_c [m3]
-  Real quad_point[Dim] = {};  ///< where: cell centre, or centroid of a cut cell [m]
-  Real quad_pressure = 0;     ///< pressure there [Pa]
-  Real fill = 0;              ///< filled fraction of the cell, slivers included
-  Real rate = 0;              ///< div v^s (soil) or div q (free) [1/s]
-  Real gain = 0;              ///< water received in the step [kg]
-  Real limit = 1;             ///< donor limiter on outflow
-  Real mean_velocity[Dim] = {};   ///< of the water, mass weighted [m/s]
-  Real momentum_gain[Dim] = {};   ///< velocity change by exchanged momentum [m/s]
+  Real water = 0;                   ///< M_c [kg]
+  Real storage = 0;                 ///< sum V d(theta)/dp [m3/Pa]
+  Real low = 0, high = 0;           ///< bracket of the pressure while it is sought [Pa]
+  Real centroid[Dim] = {};          ///< of the water-bearing volume [m]
+  Real quad_volume = 0;             ///< volume the pressure acts in, f V_c [m3]
+  Real quad_point[Dim] = {};        ///< where: cell centre, or centroid of a cut cell [m]
+  Real quad_pressure = 0;           ///< pressure there [Pa]
+  Real fill = 0;                    ///< filled fraction of the cell, slivers included
+  Real rate = 0;                    ///< div v^s (soil) or div q (free) [1/s]
+  Real gain = 0;                    ///< water received in the step [kg]
+  Real limit = 1;                   ///< donor limiter on outflow
+  Real mean_velocity[Dim] = {};     ///< of the water, mass weighted [m/s]
+  Real momentum_gain[Dim] = {};     ///< velocity change by exchanged momentum [m/s]
   CellKind kind = CellKind::none;
   bool at_air = false;        ///< a face of the cell is open to air
   std::uint8_t material = 0;  ///< of the largest bulk volume
@@ -90,8 +90,8 @@ struct FaceFlux {
   Real area = 0;           ///< [m2]
   Real flux = 0;           ///< volume per time, upwards along the axis, times A [m3/s]
   FaceKind kind = FaceKind::closed;
-  std::int16_t held = -1;  ///< which HeldPressure; -1: a surface that lets no water through
-  bool soil_below = false; ///< of a surface or to_free face: the soil is on the lower side
+  std::int16_t held = -1;   ///< which HeldPressure; -1: a surface that lets no water through
+  bool soil_below = false;  ///< of a surface or to_free face: the soil is on the lower side
 };
 
 /// All arrays of the grid; one entry per cell or node of the existing blocks.
@@ -109,18 +109,18 @@ struct GridState {
   AlignedVector<Record> relative;    ///< n (v^l - v^s) and mean face H of a node
   std::vector<Real> ledger_in;       ///< inflow of a block through each HeldPressure [kg]
   std::vector<Cell<Dim>> cell;
-  std::vector<char> retry;           ///< blocks whose pressures are not found yet, one per slot
-  std::vector<std::int32_t> dof;     ///< entry of the cell whose pressure a cell uses, -1: none
-  std::vector<FaceFlux> face;        ///< Dim per cell
+  std::vector<char> retry;        ///< blocks whose pressures are not found yet, one per slot
+  std::vector<std::int32_t> dof;  ///< entry of the cell whose pressure a cell uses, -1: none
+  std::vector<FaceFlux> face;     ///< Dim per cell
   std::vector<std::uint16_t> node_flags;  ///< walls and prescribed motion, see NodeFlag
 };
 
 /// Bits of GridState::node_flags.
 namespace node_flag {
-inline constexpr std::uint16_t solid_fixed = 1;     ///< << axis: no solid velocity along the axis
-inline constexpr std::uint16_t liquid_fixed = 8;    ///< << axis: no liquid velocity along the axis
-inline constexpr std::uint16_t special = 64;        ///< friction or prescribed motion: look it up
-inline constexpr std::uint16_t outside = 128;       ///< beyond the box
+inline constexpr std::uint16_t solid_fixed = 1;   ///< << axis: no solid velocity along the axis
+inline constexpr std::uint16_t liquid_fixed = 8;  ///< << axis: no liquid velocity along the axis
+inline constexpr std::uint16_t special = 64;      ///< friction or prescribed motion: look it up
+inline constexpr std::uint16_t outside = 128;     ///< beyond the box
 }  // namespace node_flag
 
 }  // namespace vadose

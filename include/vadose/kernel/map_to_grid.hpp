@@ -5,6 +5,7 @@
 /// Step 3, [Zhan] 3.4 (a): mass, momentum, stress and volume of the points to the nodes.
 
 #include <vadose/kernel/cells.hpp>
+#include <vadose/policy/shape/linear.hpp>
 
 namespace vadose::kernel {
 
@@ -23,8 +24,7 @@ template <class M, class Shape, class Points>
 VADOSE_INLINE void affine_velocity(const State<M>& state, const Points& points, std::size_t b,
                                    const Stencil<Shape, State<M>::dim>& stencil,
                                    const TileFrame<State<M>::dim>& frame,
-                                   const Lanes (&x)[State<M>::dim],
-                                   Lanes (&value)[State<M>::dim],
+                                   const Lanes (&x)[State<M>::dim], Lanes (&value)[State<M>::dim],
                                    Lanes (&moment)[State<M>::dim][State<M>::dim]) noexcept {
   constexpr int dim = State<M>::dim;
   const Real h = state.grid.cell_size();
@@ -62,7 +62,8 @@ VADOSE_INLINE SymTensor<Lanes, State<M>::stress_size> load_stress(const State<M>
 /// total stress is integrated by the solid points themselves, so that a free surface under
 /// suction is free of total stress node by node.
 template <class M>
-VADOSE_INLINE Lanes surface_liquid_stress(const State<M>& state, const CellFinder<State<M>::dim>& cells,
+VADOSE_INLINE Lanes surface_liquid_stress(const State<M>& state,
+                                          const CellFinder<State<M>::dim>& cells,
                                           const std::int32_t* entries) noexcept {
   Lanes sp(0.0);
   for (int l = 0; l < lane_count; ++l) {
@@ -114,8 +115,7 @@ VADOSE_INLINE void map_solid_batch(const State<M>& state, std::size_t b,
   scatter.value[lane::volume] = volume;
   if constexpr (State<M>::Kinematics::axisymmetric)
     scatter.value[lane::force] =
-        -volume * stress[2] *
-        over_radius<typename State<M>::Kinematics, dim>(x, Real(0));
+        -volume * stress[2] * over_radius<typename State<M>::Kinematics, dim>(x, Real(0));
   transpose(scatter.value);
   for (int e = 0; e < dim; ++e) {
     for (auto& r : scatter.slope[e]) r = Lanes(0.0);

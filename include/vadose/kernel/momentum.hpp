@@ -23,7 +23,7 @@ struct NodeSums {
   std::uint8_t material = 0;
   bool closed_surface = false;  ///< touches soil and air, and no water passes
   bool has_soil = false;
-  Real normal[Dim] = {};        ///< out of the soil, where closed_surface
+  Real normal[Dim] = {};  ///< out of the soil, where closed_surface
 };
 
 /// Value and gradient of the hat function of corner `corner` (0 or 1 per axis) of a cell.
@@ -58,9 +58,8 @@ void quad_coordinates(const State<M>& state, const Index<State<M>::dim>& cell,
 
 /// Adds one cell's share to a node. corner: which corner of the cell the node is.
 template <class M>
-void add_cell(const State<M>& state, const Cell<State<M>::dim>& c,
-              const Index<State<M>::dim>& cell, const Index<State<M>::dim>& corner,
-              NodeSums<State<M>::dim>& node) noexcept {
+void add_cell(const State<M>& state, const Cell<State<M>::dim>& c, const Index<State<M>::dim>& cell,
+              const Index<State<M>::dim>& corner, NodeSums<State<M>::dim>& node) noexcept {
   constexpr int dim = State<M>::dim;
   Real xi[dim];
   quad_coordinates(state, cell, c, xi);
@@ -101,8 +100,8 @@ void add_held(const State<M>& state, const FaceFlux& face, const Cell<State<M>::
   const Real share = face.area / power<dim - 1>(2.0);
   // A surface below the face plane divides its pull among the nodes of the cut cell.
   const Real at_surface = wall ? 1 : min(1.5, soil.fill);
-  node.force[axis] -= outward * share * face.held_pressure *
-                      (on_soil_node ? 1 - at_surface : at_surface);
+  node.force[axis] -=
+      outward * share * face.held_pressure * (on_soil_node ? 1 - at_surface : at_surface);
 }
 
 /// Gathers cells and faces around a node (local index in its block).
@@ -149,7 +148,8 @@ NodeSums<State<M>::dim> gather_node(const State<M>& state, const CellView<M>& vi
     for (int d = 0; d < dim; ++d) {
       for (int side = 0; side < 2; ++side) {
         const std::size_t fe =
-            side == 0 ? e : static_cast<std::size_t>(view.tile[at + BlockGrid<dim>::tile_stride(d)]);
+            side == 0 ? e
+                      : static_cast<std::size_t>(view.tile[at + BlockGrid<dim>::tile_stride(d)]);
         const FaceFlux& f = nodes.face[fe * dim + static_cast<std::size_t>(d)];
         if (f.kind != FaceKind::surface || f.held < 0 || f.held_pressure == 0) continue;
         const bool own_cell_is_soil = f.soil_below == (side == 1);
@@ -178,7 +178,7 @@ NodeSums<State<M>::dim> gather_node(const State<M>& state, const CellView<M>& vi
 template <int Dim>
 struct NodeMotion {
   Real solid_mass = 0, liquid_mass = 0;
-  Real solid[Dim] = {}, liquid[Dim] = {};          ///< before, then after [m/s]
+  Real solid[Dim] = {}, liquid[Dim] = {};              ///< before, then after [m/s]
   Real solid_force[Dim] = {}, liquid_force[Dim] = {};  ///< [N]
 };
 
@@ -247,14 +247,14 @@ void tie_normal(const Real (&normal)[Dim], bool rigid, NodeMotion<Dim>& node) no
 
 /// Motion of a node prescribed by the user, and friction on walls.
 template <class M>
-void apply_special(const State<M>& state, std::int32_t entry, const NodeMotion<State<M>::dim>& before,
-                   NodeMotion<State<M>::dim>& node) {
+void apply_special(const State<M>& state, std::int32_t entry,
+                   const NodeMotion<State<M>::dim>& before, NodeMotion<State<M>::dim>& node) {
   constexpr int dim = State<M>::dim;
   for (const auto& s : state.special) {
     if (s.entry != entry) continue;
-    const Real factor =
-        s.factor < state.factors.size() && state.factors[s.factor] ? state.factors[s.factor](state.time)
-                                                                   : 1;
+    const Real factor = s.factor < state.factors.size() && state.factors[s.factor]
+                            ? state.factors[s.factor](state.time)
+                            : 1;
     for (int d = 0; d < dim; ++d)
       if (s.prescribed[d]) node.solid[d] = factor * s.velocity[d];
     if (s.friction_axis < 0) continue;
@@ -290,16 +290,15 @@ Real drag_coefficient(const State<M>& state, const NodeSums<State<M>::dim>& sums
 /// Factor 1 + B |w| / A by which a quadratic drag term raises the linear coefficient, with |w|
 /// after the step from the positive root of its equation (Forchheimer, closed form).
 template <class M>
-Real quadratic_drag_factor(const State<M>& state, const NodeSums<State<M>::dim>& sums, Real porosity,
-                           Real volume, const NodeMotion<State<M>::dim>& node,
+Real quadratic_drag_factor(const State<M>& state, const NodeSums<State<M>::dim>& sums,
+                           Real porosity, Real volume, const NodeMotion<State<M>::dim>& node,
                            const Real (&linear)[State<M>::dim]) {
   constexpr int dim = State<M>::dim;
   if constexpr (!QuadraticDrag<typename M::Drag>) {
     return 1;
   } else {
     Real w2 = 0, a = 0, k = 0, s = 0;
-    const Real inverse =
-        1 / node.liquid_mass + (node.solid_mass > 0 ? 1 / node.solid_mass : 0.0);
+    const Real inverse = 1 / node.liquid_mass + (node.solid_mass > 0 ? 1 / node.solid_mass : 0.0);
     for (int d = 0; d < dim; ++d) {
       const Real w = node.liquid[d] - node.solid[d] +
                      state.dt * (node.liquid_force[d] / node.liquid_mass -
@@ -360,8 +359,8 @@ void advance_pair(const State<M>& state, const NodeSums<State<M>::dim>& sums, Re
 /// Closed surfaces and walls, after the velocities.
 template <class M>
 void apply_boundaries(const State<M>& state, const NodeSums<State<M>::dim>& sums,
-                      std::int32_t entry, std::uint16_t flags, const NodeMotion<State<M>::dim>& before,
-                      NodeMotion<State<M>::dim>& node) {
+                      std::int32_t entry, std::uint16_t flags,
+                      const NodeMotion<State<M>::dim>& before, NodeMotion<State<M>::dim>& node) {
   constexpr int dim = State<M>::dim;
   const bool both = node.liquid_mass > 0 && (is_rigid<M> || node.solid_mass > 0);
   if (sums.closed_surface && both) tie_normal(sums.normal, is_rigid<M>, node);
@@ -454,8 +453,7 @@ void advance_node(State<M>& state, const CellView<M>& view) {
     advance_pair(state, sums, porosity, skeleton_volume, flags, node);
   } else {
     for (int d = 0; d < dim; ++d) {
-      if (node.solid_mass > 0)
-        node.solid[d] += state.dt * node.solid_force[d] / node.solid_mass;
+      if (node.solid_mass > 0) node.solid[d] += state.dt * node.solid_force[d] / node.solid_mass;
       if (node.liquid_mass > 0)
         node.liquid[d] += state.dt * node.liquid_force[d] / node.liquid_mass;
     }

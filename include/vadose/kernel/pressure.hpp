@@ -44,20 +44,6 @@ void solve_saturated(State<M>& state) {
   });
 }
 
-/// Driest saturation a pressure is computed for: S_res + 0.01 (1 - S_res). Drier cells keep the
-/// pressure of this one; their water content stays exact.
-inline constexpr Real driest_effective_saturation = 0.01;
-
-/// Lowest pressure sought in a soil at porosity n [Pa].
-template <class M>
-Real pressure_floor(const Soil<M>& soil, Real porosity) {
-  const auto& curve = soil.material.retention;
-  const Real residual = swrc::residual_saturation(curve);
-  const Real s = swrc::suction(curve, residual + driest_effective_saturation * (1 - residual),
-                               porosity);
-  return -min(s, 1e9);
-}
-
 /// Sums content and storage of the pore water at the trial pressures of the cells.
 template <class M>
 void sum_content(State<M>& state, bool with_momentum) {
@@ -201,10 +187,10 @@ void solve_unsaturated(State<M>& state) {
                 const Record sums = member_sums(CellView<M>(state, local, slot), nodes.content);
                 const Real target = cell.water / state.water.density;
                 const Real floor = state.soils[cell.material].pressure_floor;
-                const bool found =
-                    state.frozen ? (cell.storage = sums[lane::storage], true)
-                                 : improve_pressure(cell, sums[lane::content],
-                                                    sums[lane::storage], target, floor);
+                const bool found = state.frozen
+                                       ? (cell.storage = sums[lane::storage], true)
+                                       : improve_pressure(cell, sums[lane::content],
+                                                          sums[lane::storage], target, floor);
                 if (found)
                   cell.low = 1, cell.high = 0;  // found: not touched again
                 else
@@ -230,13 +216,11 @@ void mean_water_velocities(State<M>& state) {
               const auto i = static_cast<std::size_t>(e);
               if (state.nodes.dof[i] != e) return;
               auto& cell = state.nodes.cell[i];
-              const Record sums =
-                  member_sums(CellView<M>(state, local, slot), state.nodes.content);
+              const Record sums = member_sums(CellView<M>(state, local, slot), state.nodes.content);
               const Record masses = member_sums(CellView<M>(state, local, slot), state.nodes.pore);
               const Record free = member_sums(CellView<M>(state, local, slot), state.nodes.free);
               const Real m = masses[lane::water] + free[lane::free_water];
-              for (int d = 0; d < dim; ++d)
-                cell.mean_velocity[d] = m > 0 ? sums[d] / m : 0;
+              for (int d = 0; d < dim; ++d) cell.mean_velocity[d] = m > 0 ? sums[d] / m : 0;
             });
 }
 

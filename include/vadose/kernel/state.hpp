@@ -6,7 +6,7 @@
 
 #include <array>
 #include <cstdint>
-#include <memory>
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -23,15 +23,32 @@ namespace vadose {
 /// At most this many soils in one scene: one lane each in GridState::materials.
 inline constexpr int max_materials = lane_count;
 
+/// Driest effective saturation that a pressure is computed for. Drier cells keep the pressure of
+/// this one; their water content stays exact.
+inline constexpr Real driest_effective_saturation = 0.01;
+
+namespace detail {
+
+template <class M, bool Unsaturated = is_unsaturated<M>>
+struct KirchhoffOf {
+  using type = KirchhoffMean<typename M::Retention, typename M::Conductivity>;
+};
+template <class M>
+struct KirchhoffOf<M, false> {
+  using type = char;
+};
+
+}  // namespace detail
+
 /// One soil, ready for use in loops.
 template <class M, bool WithLaw = has_skeleton<M>>
 struct Soil {
-  Material<M> material;                          ///< all shared numbers handed on
-  law::PreparedOf<typename M::Skeleton> law;     ///< with derived numbers
-  Real p_wave_modulus = 0;                       ///< of the initial state [Pa]
-  Real pressure_floor = -1e9;                    ///< lowest pressure sought [Pa]
-  Real saturated_conductivity = 0;               ///< at the reference porosity [m/s]
-  std::optional<KirchhoffMean<typename M::Retention, typename M::Conductivity>> kirchhoff;
+  Material<M> material;                       ///< all shared numbers handed on
+  law::PreparedOf<typename M::Skeleton> law;  ///< with derived numbers
+  Real p_wave_modulus = 0;                    ///< of the initial state [Pa]
+  Real pressure_floor = -1e9;                 ///< lowest pressure sought [Pa]
+  /// Mean conductivity between two pressures; only in unsaturated models.
+  std::optional<typename detail::KirchhoffOf<M>::type> kirchhoff;
 };
 template <class M>
 struct Soil<M, false> {};
@@ -39,9 +56,9 @@ struct Soil<M, false> {};
 /// A load on the ground that follows the soil: a piece of surface with a fixed force.
 template <int Dim>
 struct SurfaceLoad {
-  Vec<Dim> position;    ///< on the surface, carried along [m]
-  Vec<Dim> force;       ///< at factor 1 [N]
-  std::size_t factor;   ///< which time factor
+  Vec<Dim> position;   ///< on the surface, carried along [m]
+  Vec<Dim> force;      ///< at factor 1 [N]
+  std::size_t factor;  ///< which time factor
 };
 
 /// A node whose solid motion is prescribed or limited by friction.
@@ -49,11 +66,11 @@ template <int Dim>
 struct SpecialNode {
   std::int32_t entry = -1;
   bool prescribed[Dim] = {};
-  Real velocity[Dim] = {};   ///< at factor 1 [m/s]
-  std::size_t factor = 0;    ///< which time factor
-  int friction_axis = -1;    ///< normal of a frictional wall, -1: none
-  int friction_side = 0;     ///< 0: wall at the lower end
-  Real friction = 0;         ///< coefficient [-]
+  Real velocity[Dim] = {};  ///< at factor 1 [m/s]
+  std::size_t factor = 0;   ///< which time factor
+  int friction_axis = -1;   ///< normal of a frictional wall, -1: none
+  int friction_side = 0;    ///< 0: wall at the lower end
+  Real friction = 0;        ///< coefficient [-]
 };
 
 /// Where the liquid meets something at a held pressure: a wall, or the ground surface.
@@ -61,16 +78,16 @@ template <int Dim>
 struct HeldPressure {
   int face_axis = -1;  ///< wall normal; -1: the ground surface
   int face_side = 0;
-  std::function<bool(const Vec<Dim>&)> contains;       ///< part of it
+  std::function<bool(const Vec<Dim>&)> contains;        ///< part of it
   std::function<Real(const Vec<Dim>&, Real)> pressure;  ///< p(x, t) [Pa]
-  Real inflow = 0;   ///< water taken in so far [kg]
-  Real outflow = 0;  ///< water let out so far [kg]
+  Real inflow = 0;                                      ///< water taken in so far [kg]
+  Real outflow = 0;                                     ///< water let out so far [kg]
 };
 
 /// Numbers of the liquid.
 struct LiquidNumbers {
-  Real density = 1000;         ///< rho_l0 [kg/m3]
-  Real bulk_modulus = 2.2e9;   ///< K [Pa]
+  Real density = 1000;        ///< rho_l0 [kg/m3]
+  Real bulk_modulus = 2.2e9;  ///< K [Pa]
 };
 
 /// Choices of the explicit step.
@@ -85,8 +102,8 @@ struct StepOptions {
 
 /// Sums of one thread, in its own cache lines.
 struct alignas(64) StepSums {
-  Real max_speed2 = 0;       ///< [m2/s2]
-  Real max_wave2 = 0;        ///< largest dry p-wave speed squared [m2/s2]
+  Real max_speed2 = 0;  ///< [m2/s2]
+  Real max_wave2 = 0;   ///< largest dry p-wave speed squared [m2/s2]
   Real max_advection = 0;
   bool failed = false;
 };
@@ -120,12 +137,12 @@ struct State {
   Vec<dim> gravity = Vec<dim>::Zero();
   StepOptions options;
 
-  Real time = 0;                ///< [s]
-  Real dt = 0;                  ///< step in work [s]
-  std::int64_t step = 0;        ///< steps taken
-  Real slack = 0;               ///< motion since the last sort [m]
-  bool frozen = false;          ///< liquid state held while the skeleton settles
-  bool has_free = false;        ///< free points exist
+  Real time = 0;          ///< [s]
+  Real dt = 0;            ///< step in work [s]
+  std::int64_t step = 0;  ///< steps taken
+  Real slack = 0;         ///< motion since the last sort [m]
+  bool frozen = false;    ///< liquid state held while the skeleton settles
+  bool has_free = false;  ///< free points exist
   Real loads_factor = 1;
 
   std::vector<SurfaceLoad<dim>> loads;
@@ -133,15 +150,15 @@ struct State {
   std::vector<SpecialNode<dim>> special;
   std::vector<HeldPressure<dim>> held;
 
-  std::vector<std::unique_ptr<kernel::Tile<dim>>> tiles;  ///< one per thread and use
-  std::vector<StepSums> sums;                             ///< one per thread
+  AlignedVector<kernel::Tile<dim>> tiles;  ///< two per thread
+  std::vector<StepSums> sums;              ///< one per thread
   Trouble trouble;
 
   /// Group of free water among liquid points.
   int free_group() const noexcept { return static_cast<int>(soils.size()); }
   /// Scratch tile of a thread.
   kernel::Tile<dim>& tile(int thread, int use = 0) noexcept {
-    return *tiles[static_cast<std::size_t>(2 * thread + use)];
+    return tiles[static_cast<std::size_t>(2 * thread + use)];
   }
   /// Volume of a cell (per metre, per radian): h^dim, times the radius of its centre.
   Real cell_volume(Real radius) const noexcept {

@@ -75,9 +75,9 @@ VADOSE_INLINE void rotate_stress(const Lanes (&l)[Dim][Dim], Real dt,
 /// What nodes hand back to eight points.
 template <int Dim>
 struct PointMotion {
-  Lanes velocity[Dim];        ///< interpolated new velocity
-  Lanes increment[Dim];       ///< interpolated change of velocity
-  Lanes gradient[Dim][Dim];   ///< dv_a/dx_b
+  Lanes velocity[Dim];       ///< interpolated new velocity
+  Lanes increment[Dim];      ///< interpolated change of velocity
+  Lanes gradient[Dim][Dim];  ///< dv_a/dx_b
 };
 
 /// Interpolates velocity, its change and gradient.
@@ -98,8 +98,8 @@ VADOSE_INLINE void interpolate(const Stencil<Shape, Dim>& stencil, const Record*
 /// First moments of the nodal velocity, B = sum w v (x_I - x_p)^T (APIC). For tensor-product
 /// weights it needs one more pass over the nodes; done per point.
 template <class Shape, int Dim>
-VADOSE_INLINE void velocity_moment(const Stencil<Shape, Dim>& s, const TileFrame<Dim>& frame, Real h,
-                                   const Lanes (&x)[Dim], const Record* tile,
+VADOSE_INLINE void velocity_moment(const Stencil<Shape, Dim>& s, const TileFrame<Dim>& frame,
+                                   Real h, const Lanes (&x)[Dim], const Record* tile,
                                    Lanes (&moment)[Dim][Dim]) noexcept {
   for (int l = 0; l < lane_count; ++l) {
     Real sum[Dim][Dim] = {};
@@ -249,7 +249,8 @@ VADOSE_INLINE void update_solid_batch(State<M>& state, std::size_t b,
   rotate_stress(motion.gradient, dt, stress);
   constexpr int state_size = law::state_size<typename M::Skeleton>;
   Lanes numbers[state_size + 1];
-  for (int i = 0; i < state_size; ++i) numbers[i] = points.load(field::law_state, b, i);
+  if constexpr (state_size > 0)
+    for (int i = 0; i < state_size; ++i) numbers[i] = points.load(field::law_state, b, i);
   const auto& soil = state.soils[static_cast<std::size_t>(points.group(b))];
   if (law::apply(soil.law, step, stress, numbers) != Status::ok) {
     sums.failed = true;
@@ -257,7 +258,8 @@ VADOSE_INLINE void update_solid_batch(State<M>& state, std::size_t b,
                    stress.mean());
   }
   for (int i = 0; i < n; ++i) points.store(field::bishop_stress, b, i, stress[i]);
-  for (int i = 0; i < state_size; ++i) points.store(field::law_state, b, i, numbers[i]);
+  if constexpr (state_size > 0)
+    for (int i = 0; i < state_size; ++i) points.store(field::law_state, b, i, numbers[i]);
 
   Lanes volume_rate = rate.trace();
   if constexpr (has_liquid<M>) {
@@ -269,11 +271,11 @@ VADOSE_INLINE void update_solid_batch(State<M>& state, std::size_t b,
   points.store(field::volume, b, volume);
   const Lanes mass = points.load(field::mass, b);
   const Lanes alive_mass = max(mass, Lanes(1e-300));
-  sums.max_wave2 = max(
-      sums.max_wave2, max_lane(Lanes(soil.p_wave_modulus) * select(mass > Lanes(0.0), volume,
-                                                                  Lanes(0.0)) / alive_mass));
-  const LaneMask solid_only = (mass > Lanes(0.0)) &
-                              !(mass < Lanes(soil.material.solid_density) * volume);
+  sums.max_wave2 =
+      max(sums.max_wave2, max_lane(Lanes(soil.p_wave_modulus) *
+                                   select(mass > Lanes(0.0), volume, Lanes(0.0)) / alive_mass));
+  const LaneMask solid_only =
+      (mass > Lanes(0.0)) & !(mass < Lanes(soil.material.solid_density) * volume);
   if (any(solid_only)) {
     sums.failed = true;
     report_trouble(state, points, b, solid_only, "porosity in (0, 1)", "solid",
@@ -342,8 +344,8 @@ VADOSE_INLINE void exchange_batch(State<M>& state, std::size_t b,
       }
       mass[l] = after;
       // The storage at the start of the step predicts the pressure; it only starts the search.
-      const Real squeezed = cell.rate * state.dt * cell.saturation * cell.pore_volume /
-                            max(cell.porosity, 1e-6);
+      const Real squeezed =
+          cell.rate * state.dt * cell.saturation * cell.pore_volume / max(cell.porosity, 1e-6);
       p += (cell.gain / state.water.density - squeezed) / max(cell.storage, 1e-30);
     }
     for (int d = 0; d < dim; ++d)
@@ -355,8 +357,8 @@ VADOSE_INLINE void exchange_batch(State<M>& state, std::size_t b,
 /// Free water: pressure by the rate of its cell, relaxed towards the cell's; volume from mass and
 /// pressure; exchange with the soil in proportion to mass.
 template <class M>
-VADOSE_INLINE void free_batch(State<M>& state, std::size_t b, const CellFinder<State<M>::dim>& cells,
-                              const std::int32_t* entries,
+VADOSE_INLINE void free_batch(State<M>& state, std::size_t b,
+                              const CellFinder<State<M>::dim>& cells, const std::int32_t* entries,
                               const Lanes (&x)[State<M>::dim]) noexcept {
   constexpr int dim = State<M>::dim;
   auto& points = state.liquid;
@@ -374,8 +376,8 @@ VADOSE_INLINE void free_batch(State<M>& state, std::size_t b, const CellFinder<S
       at_rest += state.water.density * state.gravity[d] * (x[d][l] - cell.centroid[d]);
     if (cell.kind == CellKind::free) {
       if (!state.frozen)
-        pressure[l] = at_rest + keep * (pressure[l] - at_rest) -
-                      bulk_modulus * state.dt * cell.rate;
+        pressure[l] =
+            at_rest + keep * (pressure[l] - at_rest) - bulk_modulus * state.dt * cell.rate;
       if (cell.gain != 0 && cell.water > 0) {
         const Real dm = cell.gain * mass[l] / cell.water;
         for (int d = 0; d < dim; ++d) points.at(field::velocity, b, d)[l] += cell.momentum_gain[d];
@@ -398,6 +400,7 @@ VADOSE_INLINE void update_liquid_batch(State<M>& state, std::size_t b, int slot,
   constexpr int dim = State<M>::dim;
   auto& points = state.liquid;
   const bool is_free = points.group(b) == state.free_group();
+  if (is_free && state.frozen) return;
   Lanes x[dim], inside[dim], none[dim];
   load_positions(points, b, x);
   for (int d = 0; d < dim; ++d) {
@@ -414,8 +417,8 @@ VADOSE_INLINE void update_liquid_batch(State<M>& state, std::size_t b, int slot,
   update_velocity(state, points, b, stencil, frame, inside, liquid, motion);
   if constexpr (is_viscous<M>) {
     if (is_free) {
-      const Lanes hoop = motion.velocity[0] *
-                         over_radius<typename State<M>::Kinematics, dim>(x, Real(0));
+      const Lanes hoop =
+          motion.velocity[0] * over_radius<typename State<M>::Kinematics, dim>(x, Real(0));
       const auto tau = state.fluid.viscous_stress(
           rate_of_deformation<State<M>::stress_size>(motion.gradient, hoop));
       for (int i = 0; i < State<M>::stress_size; ++i)
@@ -451,7 +454,8 @@ VADOSE_INLINE void update_liquid_batch(State<M>& state, std::size_t b, int slot,
       skeleton.evaluate(frame, x, half);
       PointMotion<dim> carried;
       interpolate<true>(skeleton, solid, carried);
-      Lanes trace = carried.velocity[0] * over_radius<typename State<M>::Kinematics, dim>(x, Real(0));
+      Lanes trace =
+          carried.velocity[0] * over_radius<typename State<M>::Kinematics, dim>(x, Real(0));
       for (int d = 0; d < dim; ++d) trace += carried.gradient[d][d];
       const Lanes rate = cell_rates(state, cells, entries, trace);
       const Lanes stretch = exp(Lanes(state.dt) * rate);
@@ -506,7 +510,8 @@ void move_loads(State<M>& state) {
         w *= corner[d] ? xi[d] : 1 - xi[d];
       }
       const std::int32_t e = state.grid.entry(node);
-      for (int d = 0; d < dim; ++d) v[d] += w * state.nodes.solid_out[static_cast<std::size_t>(e)][d];
+      for (int d = 0; d < dim; ++d)
+        v[d] += w * state.nodes.solid_out[static_cast<std::size_t>(e)][d];
     });
     load.position += state.dt * v;
   }

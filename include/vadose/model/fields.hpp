@@ -29,7 +29,9 @@ constexpr bool is_viscous() {
 }
 
 /// c if the condition holds, else no component.
-constexpr int if_stored(bool condition, int c) { return condition ? c : 0; }
+constexpr int if_stored(bool condition, int c) {
+  return condition ? c : 0;
+}
 
 }  // namespace detail
 
@@ -49,9 +51,9 @@ using SolidFields = FieldSet<
     Sized<field::Mass, 1>, Sized<field::Volume, 1>,
     Sized<field::BishopStress, detail::if_stored(is_deformable<M>, M::Kinematics::stress_size)>,
     Sized<field::HalfSize,
-          detail::if_stored(is_deformable<M> && M::Shape::uses_half_size, M::Kinematics::dim)>,
-    Sized<field::Affine, detail::if_stored(is_deformable<M> && M::Transfer::affine,
-                                           power<2>(M::Kinematics::dim))>,
+          detail::if_stored(is_deformable<M>&& M::Shape::uses_half_size, M::Kinematics::dim)>,
+    Sized<field::Affine,
+          detail::if_stored(is_deformable<M>&& M::Transfer::affine, power<2>(M::Kinematics::dim))>,
     Sized<field::LawState, detail::law_state_size<M>()>>;
 
 /// Fields of liquid points.
@@ -61,7 +63,7 @@ using LiquidFields = FieldSet<
     Sized<field::Velocity, M::Kinematics::dim>, Sized<field::Mass, 1>, Sized<field::Volume, 1>,
     Sized<field::LiquidPressure, 1>, Sized<field::Porosity, detail::if_stored(has_skeleton<M>, 1)>,
     Sized<field::HalfSize,
-          detail::if_stored(is_deformable<M> && M::Shape::uses_half_size, M::Kinematics::dim)>,
+          detail::if_stored(is_deformable<M>&& M::Shape::uses_half_size, M::Kinematics::dim)>,
     Sized<field::Affine, detail::if_stored(M::Transfer::affine, power<2>(M::Kinematics::dim))>,
     Sized<field::ViscousStress, detail::if_stored(is_viscous<M>, M::Kinematics::stress_size)>>;
 

@@ -7,8 +7,7 @@
 
 #include <vadose/core/lanes.hpp>
 
-namespace vadose::drag {
-
+namespace vadose {
 namespace detail {
 
 /// m_l m_s / (m_l + m_s) with the phases' shares of the mass; all 0 where a mass is 0.
@@ -28,6 +27,8 @@ struct ReducedMass {
 };
 
 }  // namespace detail
+
+namespace drag {
 
 /// One velocity component under linear drag: solves
 /// m_l (v_l' - v_l) = -dt D (v_l' - v_s'), m_s (v_s' - v_s) = dt D (v_l' - v_s').
@@ -66,4 +67,5 @@ VADOSE_INLINE void implicit_drag(T liquid_mass, T solid_mass, T dt_drag, T dt_qu
   }
 }
 
-}  // namespace vadose::drag
+}  // namespace drag
+}  // namespace vadose

@@ -167,7 +167,14 @@ class MohrCoulomb::Prepared {
   VADOSE_INLINE Status update(const StrainStep<T, N>& step, SymTensor<T, N>& stress,
                               State<T>& state) const noexcept {
     detail::add_elastic_stress(step.increment, bulk_modulus_, shear_modulus_, stress);
-    if (!any(may_yield(stress))) return Status::ok;
+    if (any(may_yield(stress))) return_principal(stress, state);
+    return Status::ok;
+  }
+
+ private:
+  /// Return in principal stresses; out of line, as most batches never come here.
+  template <class T, int N>
+  void return_principal(SymTensor<T, N>& stress, State<T>& state) const noexcept {
     const detail::PrincipalStress<T, N> trial(stress);
     T s[3] = {trial[0], trial[1], trial[2]};
     detail::Exchange<T> upper, lower, last;
@@ -182,10 +189,8 @@ class MohrCoulomb::Prepared {
     lower.undo(change[1], change[2]);
     upper.undo(change[0], change[1]);
     trial.add(change, stress);
-    return Status::ok;
   }
 
- private:
   /// False only where the stress is inside the inscribed cone and below the cut-off.
   template <class T, int N>
   VADOSE_INLINE auto may_yield(const SymTensor<T, N>& stress) const noexcept {

@@ -1,0 +1,113 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+/// \file
+/// Step 10: the largest stable step from the state, and what limits it.
+
+#include <vadose/kernel/pressure.hpp>
+
+namespace vadose {
+
+/// What limits a time step.
+enum class StepLimit : std::uint8_t {
+  none,       ///< nothing yet
+  two_phase,  ///< compression wave of soil and pore water
+  skeleton,   ///< compression wave of dry soil
+  water,      ///< sound in free water
+  motion,     ///< points may not cross more than a part of a cell
+  user,       ///< the largest step or the end time asked for
+};
+
+/// Name of a limit for reports.
+constexpr const char* name(StepLimit limit) noexcept {
+  constexpr const char* names[] = {"none",  "two-phase wave", "skeleton wave",
+                                   "water", "motion",         "user"};
+  return names[static_cast<int>(limit)];
+}
+
+namespace kernel {
+
+/// Highest frequency squared of soil with pore water, drag taken implicitly [1/s2]:
+/// omega^2 = (2/h^2) [tr + sqrt(tr^2 - 4 det)], K* = S/(S/K + S_p),
+/// tr = K*/rho_l + [E_c + S (1-n)^2 K*/n] / ((1-n) rho_s), det = K* E_c / ((1-n) rho_s rho_l).
+/// E_c [Pa], K* [Pa] effective_modulus, n, S [-], densities [kg/m3], h [m].
+inline Real two_phase_frequency2(Real p_wave_modulus, Real effective_modulus, Real porosity,
+                                 Real saturation, Real solid_density, Real liquid_density,
+                                 Real cell_size) noexcept {
+  const Real solid = (1 - porosity) * solid_density;
+  const Real tr = effective_modulus / liquid_density +
+                  (p_wave_modulus +
+                   saturation * (1 - porosity) * (1 - porosity) * effective_modulus / porosity) /
+                      solid;
+  const Real det = effective_modulus * p_wave_modulus / (solid * liquid_density);
+  return 2 / (cell_size * cell_size) * (tr + std::sqrt(max(0.0, tr * tr - 4 * det)));
+}
+
+/// The same of a rigid skeleton: only the water moves.
+inline Real seepage_frequency2(Real effective_modulus, Real liquid_density,
+                               Real cell_size) noexcept {
+  return 4 * effective_modulus / (liquid_density * cell_size * cell_size);
+}
+
+/// A stable step and its reason.
+struct StableStep {
+  Real dt = 1e30;  ///< [s]
+  StepLimit limit = StepLimit::none;
+
+  void take(Real other, StepLimit reason) noexcept {
+    if (other < dt) {
+      dt = other;
+      limit = reason;
+    }
+  }
+};
+
+/// Largest step of the water and the soil it fills, 2/omega, over all cells.
+template <class M>
+StableStep wet_step(const State<M>& state) {
+  constexpr int dim = State<M>::dim;
+  const auto& nodes = state.nodes;
+  const Real h = state.grid.cell_size();
+  const Real rho = state.water.density;
+  StableStep step;
+  for (std::size_t i = 0; i + Block<dim>::cells < nodes.cell.size(); ++i) {
+    if (nodes.dof[i] != static_cast<std::int32_t>(i)) continue;
+    const auto& c = nodes.cell[i];
+    if (c.kind == CellKind::free) {
+      step.take(2 / std::sqrt(4 * state.water.bulk_modulus / (rho * h * h)), StepLimit::water);
+    } else if constexpr (has_skeleton<M>) {
+      if (!(c.saturation > 0)) continue;
+      const auto& soil = state.soils[c.material];
+      // theta' = n (S/K + S_p) exp(p/K): K* = S / (theta'/n).
+      const Real modulus = c.saturation * c.pore_volume / max(c.storage, 1e-30);
+      const Real w2 = is_rigid<M>
+                          ? seepage_frequency2(modulus, rho, h)
+                          : two_phase_frequency2(soil.p_wave_modulus, modulus, c.porosity,
+                                                 c.saturation, soil.material.solid_density, rho, h);
+      step.take(2 / std::sqrt(w2), StepLimit::two_phase);
+    }
+  }
+  return step;
+}
+
+/// Largest stable step of the present state, before the factor C, and motion limits after it.
+template <class M>
+StableStep stable_step(const State<M>& state) {
+  const Real h = state.grid.cell_size();
+  StableStep step;
+  if constexpr (has_liquid<M>) step = wet_step(state);
+  Real wave2 = 0, speed2 = 0;
+  for (const StepSums& s : state.sums) {
+    wave2 = max(wave2, s.max_wave2);
+    speed2 = max(speed2, s.max_speed2);
+  }
+  if (wave2 > 0) step.take(h / std::sqrt(wave2), StepLimit::skeleton);
+  step.dt *= state.options.courant;
+  if (speed2 > 0)
+    step.take(state.options.displacement_cap * h / std::sqrt(speed2), StepLimit::motion);
+  step.take(state.options.dt_max, StepLimit::user);
+  return step;
+}
+
+}  // namespace kernel
+}  // namespace vadose

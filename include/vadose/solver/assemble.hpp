@@ -1,0 +1,233 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+/// \file
+/// From a scene to the state of a run: points, soils, walls, loads.
+
+#include <utility>
+
+#include <vadose/kernel/state.hpp>
+#include <vadose/scene/scene.hpp>
+
+namespace vadose::detail {
+
+/// Values of one point in field order, written by tag.
+template <class Fields>
+class PointValues {
+ public:
+  template <class Tag>
+  void set(Tag, Real value, int component = 0) {
+    if constexpr (Fields::template has<Tag>)
+      values_[static_cast<std::size_t>(Fields::template offset<Tag>() + component)] = value;
+  }
+  std::span<const double> all() const { return values_; }
+
+ private:
+  std::array<double, static_cast<std::size_t>(Fields::total)> values_{};
+};
+
+/// Radius factor of a volume: r in axisymmetry (quantities per radian), else 1.
+template <class M>
+Real radius_factor(const Vec<M::Kinematics::dim>& x) {
+  return M::Kinematics::axisymmetric ? x[0] : 1;
+}
+
+/// Position, velocity, half size, id and volume of a new point.
+template <class M, class Fields>
+void set_common(PointValues<Fields>& p, const SeedPoint<M::Kinematics::dim>& seed,
+                const Vec<M::Kinematics::dim>& velocity, Real spacing, std::int64_t id) {
+  p.set(field::id, static_cast<Real>(id));
+  p.set(field::volume, seed.volume * radius_factor<M>(seed.position));
+  for (int d = 0; d < M::Kinematics::dim; ++d) {
+    p.set(field::position, seed.position[d], d);
+    p.set(field::velocity, velocity[d], d);
+    p.set(field::half_size, 0.5 * spacing, d);
+  }
+}
+
+/// Solid and pore-water points of one body of soil. Each water point starts where a solid point
+/// is and stays there; soil that starts dry has water points without mass.
+template <class M>
+void seed_soil(State<M>& state, const Scene<M>& scene, const InitialState<M>& initial, int index,
+               std::int64_t& next_solid, std::int64_t& next_liquid) {
+  const auto& body = scene.soils()[static_cast<std::size_t>(index)];
+  const Material<M> material = scene.material(body.material);
+  const Real spacing = scene.cell_size() / body.lattice.per_axis;
+  for (const auto& seed : scene.seed_soil(index)) {
+    PointValues<SolidFields<M>> solid;
+    set_common<M>(solid, seed, body.options.velocity, spacing, next_solid++);
+    const Real volume = seed.volume * radius_factor<M>(seed.position);
+    const Real density = is_finite(material.solid_density) ? material.solid_density : 2650;
+    solid.set(field::mass, density * (1 - material.porosity) * volume);
+    if constexpr (is_deformable<M>) {
+      const auto stress = initial.bishop_stress(index, seed.position);
+      for (int i = 0; i < stress.size; ++i) solid.set(field::bishop_stress, stress[i], i);
+    }
+    const auto numbers = law::initial_state(material.skeleton);
+    for (std::size_t i = 0; i < numbers.size(); ++i)
+      solid.set(field::law_state, numbers[i], static_cast<int>(i));
+    state.solid.append(solid.all(), body.material);
+    if constexpr (has_liquid<M>) {
+      PointValues<LiquidFields<M>> liquid;
+      set_common<M>(liquid, seed, body.options.velocity, spacing, next_liquid++);
+      const Real p = initial.liquid_pressure(index, seed.position);
+      const auto theta = swrc::water_content<Real>(material.retention, p, material.porosity,
+                                                   1 / state.water.bulk_modulus);
+      liquid.set(field::mass, body.options.dry ? 0 : state.water.density * volume * theta.value);
+      liquid.set(field::porosity, material.porosity);
+      liquid.set(field::liquid_pressure, p);
+      state.liquid.append(liquid.all(), body.material);
+    }
+  }
+}
+
+/// Points of one body of free water.
+template <class M>
+void seed_water(State<M>& state, const Scene<M>& scene, const InitialState<M>& initial, int index,
+                std::int64_t& next) {
+  const auto& body = scene.waters()[static_cast<std::size_t>(index)];
+  const Real spacing = scene.cell_size() / body.lattice.per_axis;
+  for (const auto& seed : scene.seed_water(index)) {
+    PointValues<LiquidFields<M>> liquid;
+    set_common<M>(liquid, seed, body.options.velocity, spacing, next++);
+    const Real p = initial.water_pressure(index, seed.position);
+    const Real volume = seed.volume * radius_factor<M>(seed.position);
+    liquid.set(field::mass, state.water.density * volume * std::exp(p / state.water.bulk_modulus));
+    liquid.set(field::porosity, 1);
+    liquid.set(field::liquid_pressure, p);
+    state.liquid.append(liquid.all(), state.free_group());
+    state.has_free = true;
+  }
+}
+
+/// Soils with everything derived from their parameters.
+template <class M>
+void prepare_soils(State<M>& state, const Scene<M>& scene) {
+  if constexpr (has_skeleton<M>) {
+    if (scene.materials().size() > max_materials)
+      check::fail("number of soils", static_cast<Real>(scene.materials().size()), "[0, 8]", "-");
+    for (std::size_t i = 0; i < scene.materials().size(); ++i) {
+      const Material<M> m = scene.material(static_cast<int>(i));
+      Soil<M> soil{m, law::prepared(m.skeleton), 0, -1e9, std::nullopt};
+      const auto numbers = law::initial_state(m.skeleton);
+      soil.p_wave_modulus = law::p_wave_modulus(m.skeleton, numbers.data());
+      if constexpr (is_unsaturated<M>) {
+        const Real residual = swrc::residual_saturation(m.retention);
+        soil.pressure_floor = -std::min(
+            swrc::suction(m.retention, residual + driest_effective_saturation * (1 - residual),
+                          m.porosity),
+            1e9);
+        soil.kirchhoff.emplace(m.retention, m.conductivity, m.porosity);
+      }
+      state.soils.push_back(std::move(soil));
+    }
+  }
+}
+
+/// Held pressures: walls first given, then the surface.
+template <class M>
+HeldPressure<M::Kinematics::dim> held_pressure(
+    const bc::PrescribedPressure<M::Kinematics::dim>& c) {
+  constexpr int dim = M::Kinematics::dim;
+  HeldPressure<dim> h;
+  if (c.face != unset_face) {
+    h.face_axis = axis(c.face, dim);
+    h.face_side = side(c.face);
+  }
+  h.contains = [region = c.region](const Vec<dim>& x) { return region.contains(x); };
+  h.pressure = [c](const Vec<dim>& x, Real t) { return c.at(x, t); };
+  return h;
+}
+template <class M>
+HeldPressure<M::Kinematics::dim> held_pressure(const bc::ZeroSuction& c) {
+  constexpr int dim = M::Kinematics::dim;
+  HeldPressure<dim> h;
+  h.contains = [region = c.region](const Vec<dim>& x) { return region.contains(x); };
+  h.pressure = [](const Vec<dim>&, Real) { return Real(0); };
+  return h;
+}
+
+/// Axis along which a box is thinnest.
+template <int Dim>
+int thinnest_axis(const Box<Dim>& box) {
+  int best = 0;
+  for (int d = 1; d < Dim; ++d)
+    if (box.high[d] - box.low[d] < box.high[best] - box.low[best]) best = d;
+  return best;
+}
+
+/// Loads of one traction condition: one piece of surface per exposed side of a solid point of the
+/// region. A pressure acts on every exposed side, a traction vector on the sides across the
+/// region's thinnest extent (the layer the user chose).
+template <class M>
+void add_traction(State<M>& state, const Scene<M>& scene,
+                  const bc::Traction<M::Kinematics::dim>& t) {
+  constexpr int dim = M::Kinematics::dim;
+  state.factors.push_back(t.time_factor);
+  const std::size_t factor = state.factors.size() - 1;
+  const Region<dim>& region = *t.region.template get<dim>();
+  const int across = thinnest_axis(region.bounding_box());
+  const auto exposed = [&](const Vec<dim>& next, const Vec<dim>& surface, int d, Real spacing) {
+    for (const auto& other : scene.soils())
+      if (other.region.contains(next)) return false;
+    return surface[d] > scene.box().low[d] + 1e-9 * spacing &&
+           surface[d] < scene.box().high[d] - 1e-9 * spacing;
+  };
+  const std::size_t before = state.loads.size();
+  for (std::size_t i = 0; i < scene.soils().size(); ++i) {
+    const Real spacing = scene.cell_size() / scene.soils()[i].lattice.per_axis;
+    for (const auto& seed : scene.seed_soil(static_cast<int>(i))) {
+      if (!region.contains(seed.position)) continue;
+      for (int d = 0; d < dim; ++d)
+        for (int sign = -1; sign <= 1; sign += 2) {
+          Vec<dim> next = seed.position, surface = seed.position;
+          next[d] += sign * spacing;
+          surface[d] += 0.5 * sign * spacing;
+          if ((t.has_vector() && d != across) || !exposed(next, surface, d, spacing)) continue;
+          const Real area = power<dim - 1>(spacing) * radius_factor<M>(surface);
+          Vec<dim> force = Vec<dim>::Zero();
+          if (t.has_pressure())
+            force[d] = -sign * t.normal_pressure * area;
+          else
+            force = t.traction * area;
+          state.loads.push_back({surface, force, factor});
+        }
+    }
+  }
+  if (state.loads.size() == before)
+    throw SetupError(
+        "number of loaded surface points = 0 outside [1, inf) [-] in region of bc::Traction");
+}
+
+/// Everything but the points' order and the walls.
+template <class M>
+void assemble(State<M>& state, const Scene<M>& scene) {
+  constexpr int dim = State<M>::dim;
+  Index<dim> cells;
+  for (int d = 0; d < dim; ++d) cells[d] = scene.cells()[static_cast<std::size_t>(d)];
+  state.grid = BlockGrid<dim>(scene.box().low, scene.cell_size(), cells);
+  state.gravity = scene.gravity;
+  state.water = {scene.liquid.density, scene.liquid.bulk_modulus};
+  state.fluid = scene.liquid.law;
+  prepare_soils(state, scene);
+  const InitialState<M> initial = scene.initial_state();
+  std::int64_t next_solid = 0, next_liquid = 0;
+  if constexpr (has_skeleton<M>) {
+    for (std::size_t i = 0; i < scene.soils().size(); ++i)
+      seed_soil(state, scene, initial, static_cast<int>(i), next_solid, next_liquid);
+  }
+  if constexpr (has_liquid<M>) {
+    for (std::size_t i = 0; i < scene.waters().size(); ++i)
+      seed_water(state, scene, initial, static_cast<int>(i), next_liquid);
+    for (const auto& c : scene.template conditions<bc::PrescribedPressure<dim>>())
+      state.held.push_back(held_pressure<M>(c));
+    if constexpr (has_skeleton<M>)
+      for (const auto& c : scene.template conditions<bc::ZeroSuction>())
+        state.held.push_back(held_pressure<M>(c));
+  }
+  if constexpr (is_deformable<M>)
+    for (const auto& t : scene.template conditions<bc::Traction<dim>>())
+      add_traction(state, scene, t);
+}
+
+}  // namespace vadose::detail

@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+/// \file
+/// What a step and a run report.
+
+#include <cstdint>
+#include <stdexcept>
+#include <string>
+
+#include <vadose/kernel/time_step.hpp>
+
+namespace vadose {
+
+/// Outcome of one step.
+struct StepReport {
+  Status status = Status::ok;
+  Real time = 0;  ///< after the step [s]
+  Real dt = 0;    ///< step taken [s]
+  StepLimit limit = StepLimit::none;
+  std::int64_t step = 0;  ///< number of the step
+  Trouble trouble;        ///< where status is not ok
+
+  /// One line for people.
+  std::string text() const {
+    char buffer[400];
+    if (status == Status::ok) {
+      std::snprintf(buffer, sizeof buffer, "step %lld, t = %.6g s, dt = %.3g s (%s)",
+                    static_cast<long long>(step), time, dt, name(limit));
+    } else {
+      std::snprintf(buffer, sizeof buffer,
+                    "unstable: step %lld, t = %.6g s, dt = %.3g s (%s): %s violated by %s point "
+                    "%lld at (%.6g, %.6g, %.6g) [m], value %.6g",
+                    static_cast<long long>(step), time, dt, name(limit),
+                    trouble.criterion ? trouble.criterion : "finite state", trouble.phase,
+                    static_cast<long long>(trouble.id), trouble.position[0], trouble.position[1],
+                    trouble.position[2], trouble.value);
+    }
+    return buffer;
+  }
+};
+
+/// Thrown by advance_to() when a step fails; the state is the one after the failed step and is
+/// for inspection only.
+class InstabilityError : public std::runtime_error {
+ public:
+  explicit InstabilityError(const StepReport& report)
+      : std::runtime_error(report.text()), report_(report) {}
+  const StepReport& report() const noexcept { return report_; }
+
+ private:
+  StepReport report_;
+};
+
+/// Water of a run [kg] (per metre in plane strain, per radian, per square metre in 1D).
+struct WaterBalance {
+  Real initial = 0;  ///< at the start
+  Real inflow = 0;   ///< through held pressures
+  Real outflow = 0;  ///< through held pressures
+  Real pore = 0;     ///< stored as pore water now
+  Real free = 0;     ///< stored as free water now
+  Real lost = 0;     ///< left with points that left the box
+
+  /// Stored now less what must be there [kg].
+  Real closure() const noexcept { return pore + free - (initial + inflow - outflow - lost); }
+  /// Closure over the largest quantity in the balance [-].
+  Real relative_closure() const noexcept {
+    const Real scale = max(max(initial, inflow), max(outflow, pore + free));
+    return scale > 0 ? closure() / scale : 0;
+  }
+};
+
+/// Grains of a run [kg].
+struct SolidBalance {
+  Real initial = 0;
+  Real stored = 0;
+  Real lost = 0;
+  Real closure() const noexcept { return stored - (initial - lost); }
+  Real relative_closure() const noexcept { return initial > 0 ? closure() / initial : 0; }
+};
+
+}  // namespace vadose

@@ -1,0 +1,418 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+/// \file
+/// The solver: owns the state of a run; the host owns the loop.
+
+#include <chrono>
+#include <string>
+#include <vector>
+
+#include <vadose/solver/assemble.hpp>
+#include <vadose/solver/report.hpp>
+#include <vadose/solver/scheme.hpp>
+#include <vadose/solver/walls.hpp>
+
+namespace vadose {
+
+/// Choices of a run; every one has a default.
+template <class M>
+struct SolverOptions {
+  Real courant = 0.5;           ///< part of the stable step that is taken [-], in (0, 2]
+  Real damping = 0;             ///< local damping of the skeleton [-], in [0, 1)
+  Real displacement_cap = 0.1;  ///< largest motion in a step [cell size], in (0, 0.25]
+  Real dt_max = 1e30;           ///< largest step [s], > 0
+  Real free_relaxation = 10;    ///< rate at which free points share their cell's pressure [1/s]
+  typename M::Transfer transfer = {};  ///< numbers of the velocity transfer
+  int threads = 1;                     ///< >= 1; more than one only where the host links OpenMP
+
+  void validate() const {
+    check::in_context("solver options", [&] {
+      check::inside("courant", courant, 0, 2, "-");
+      if (!(damping >= 0 && damping < 1)) check::fail("damping", damping, "[0, 1)", "-");
+      if (!(displacement_cap > 0 && displacement_cap <= 0.25))
+        check::fail("displacement_cap", displacement_cap, "(0, 0.25]", "cell size");
+      check::positive("dt_max", dt_max, "s");
+      check::non_negative("free_relaxation", free_relaxation, "1/s");
+      transfer.validate();
+      check::within("threads", threads, 1, 1024, "-");
+    });
+  }
+};
+
+/// How a skeleton is brought to rest before a run.
+struct EquilibriumOptions {
+  Real tolerance = 1e-4;  ///< out-of-balance force over weight [-]
+  Real max_time = 10;     ///< give up after this much model time [s]
+  Real damping = 0.7;     ///< local damping meanwhile [-], in [0, 1)
+};
+
+/// What equilibrate() did.
+struct EquilibriumReport {
+  bool converged = false;
+  Real residual = 0;  ///< out-of-balance force over weight at the end [-]
+  Real time = 0;      ///< model time spent [s]
+  std::int64_t steps = 0;
+};
+
+/// What a run will cost.
+struct Estimate {
+  std::size_t solid_points = 0, liquid_points = 0;
+  std::size_t blocks = 0;  ///< blocks of 64 cells that exist
+  Real dt = 0;             ///< stable step now [s]
+  StepLimit limit = StepLimit::none;
+  std::int64_t steps = 0;  ///< at that step, to the end time
+  Real seconds = 0;        ///< wall time
+  Real megabytes = 0;      ///< of points and grid
+
+  /// A few lines for people.
+  std::string text() const {
+    char buffer[400];
+    std::snprintf(buffer, sizeof buffer,
+                  "points: %zu solid, %zu liquid; blocks of 64 cells: %zu; memory %.1f MB\n"
+                  "step: %.3g s, limited by %s; %lld steps, about %.3g s of wall time\n",
+                  solid_points, liquid_points, blocks, megabytes, dt, name(limit),
+                  static_cast<long long>(steps), seconds);
+    return buffer;
+  }
+};
+
+/// A run of model M. Construction checks the scene and throws SetupError; nothing is half built.
+template <class M, class Scheme = scheme::Explicit>
+class Solver {
+  static_assert(CheckModel<M>::ok);
+
+ public:
+  static constexpr int dim = M::Kinematics::dim;
+  using Options = SolverOptions<M>;
+
+  explicit Solver(const Scene<M>& scene, const Options& options = {}) {
+    options.validate();
+    scene.validate();
+    state_.transfer = options.transfer;
+    state_.options = {options.courant, options.damping,         options.displacement_cap,
+                      options.dt_max,  options.free_relaxation, options.threads};
+    detail::assemble(state_, scene);
+    collect_walls(scene);
+    state_.tiles.resize(static_cast<std::size_t>(2 * options.threads));
+    state_.sums.resize(static_cast<std::size_t>(options.threads));
+    sort();
+    remember_start();
+    start_wave_speed();
+    count_initial();
+  }
+
+  Real time() const noexcept { return state_.time; }             ///< [s]
+  std::int64_t steps() const noexcept { return state_.step; }    ///< taken so far
+  const State<M>& state() const noexcept { return state_; }      ///< everything
+  const auto& solid() const noexcept { return state_.solid; }    ///< solid points
+  const auto& liquid() const noexcept { return state_.liquid; }  ///< liquid points
+
+  /// Adds a condition on the liquid that opens now: bc::ZeroSuction, bc::PrescribedPressure,
+  /// bc::Drained.
+  template <class Condition>
+  void add(const Condition& condition) {
+    check::in_context(Condition::name, [&] { condition.validate(dim); });
+    if constexpr (std::is_same_v<Condition, bc::Drained>)
+      state_.held.push_back(detail::held_pressure<M>(condition.template prescribed<dim>()));
+    else
+      state_.held.push_back(detail::held_pressure<M>(condition));
+    detail::flag_nodes(state_, walls_);
+  }
+
+  /// One step, at most to time t_end [s]. Never throws; look at the report's status.
+  StepReport step(Real t_end = 1e300) noexcept(false) {
+    if (state_.slack > 0.25 * state_.grid.cell_size() || state_.solid.has_new() || has_new_liquid())
+      sort();
+    state_.trouble = Trouble{};
+    const kernel::StableStep used = Scheme::step(state_, t_end - state_.time);
+    state_.time += state_.dt;
+    ++state_.step;
+    StepReport report{Status::ok, state_.time, state_.dt, used.limit, state_.step, {}};
+    Real speed2 = 0;
+    for (const StepSums& s : state_.sums) {
+      if (s.failed) report.status = Status::failed;
+      speed2 = std::max(speed2, s.max_speed2);
+    }
+    report.trouble = state_.trouble;
+    state_.slack += state_.dt * std::sqrt(speed2);
+    last_ = report;
+    return report;
+  }
+
+  /// Steps to time t [s] exactly; throws InstabilityError with the report of a failed step.
+  void advance_to(Real t) {
+    while (state_.time < t) {
+      // A remainder below round-off is no step.
+      if (t - state_.time <= 1e-14 * std::fabs(t)) {
+        state_.time = t;
+        break;
+      }
+      const StepReport report = step(t);
+      if (report.status != Status::ok) throw InstabilityError(report);
+    }
+  }
+
+  /// Report of the last step.
+  const StepReport& last_step() const noexcept { return last_; }
+
+  /// Brings the skeleton to rest under gravity and loads with the liquid state held: pressures
+  /// stay, no water moves. Afterwards velocities, time and displacements are zero and the water
+  /// of each point is that of its pressure at its new porosity.
+  EquilibriumReport equilibrate(const EquilibriumOptions& o = {}) {
+    static_assert(is_deformable<M>, "vadose: equilibrate() needs a skeleton that moves");
+    const Real damping = state_.options.damping;
+    state_.options.damping = o.damping;
+    state_.frozen = true;
+    EquilibriumReport report;
+    const Real start = state_.time;
+    const std::int64_t first = state_.step;
+    while (state_.time - start < o.max_time) {
+      const StepReport s = step();
+      if (s.status != Status::ok) throw InstabilityError(s);
+      if ((state_.step - first) % 20 != 0) continue;
+      report.residual = out_of_balance();
+      if (report.residual < o.tolerance) {
+        report.converged = true;
+        break;
+      }
+    }
+    report.time = state_.time - start;
+    report.steps = state_.step - first;
+    state_.options.damping = damping;
+    state_.frozen = false;
+    restart_at_rest();
+    return report;
+  }
+
+  /// Water ledger [kg].
+  WaterBalance water_balance() const {
+    WaterBalance b;
+    b.initial = initial_water_;
+    for (const auto& h : state_.held) {
+      b.inflow += h.inflow;
+      b.outflow += h.outflow;
+    }
+    sum_water(b.pore, b.free);
+    return b;
+  }
+
+  /// Ledger of the grains [kg].
+  SolidBalance solid_balance() const {
+    SolidBalance b;
+    b.initial = initial_solid_;
+    state_.solid.for_each(
+        [&](std::size_t i, int l) { b.stored += state_.solid.at(field::mass, i)[l]; });
+    return b;
+  }
+
+  /// Cost of a run to time t_end [s]: times a few steps of a copy.
+  Estimate estimate(Real t_end) const {
+    Solver copy = *this;
+    const StepReport first = copy.step();
+    constexpr int trials = 3;
+    const auto start = std::chrono::steady_clock::now();
+    for (int i = 0; i < trials; ++i) copy.step();
+    const Real seconds =
+        std::chrono::duration<Real>(std::chrono::steady_clock::now() - start).count() / trials;
+    Estimate e;
+    e.solid_points = state_.solid.size();
+    e.liquid_points = state_.liquid.size();
+    e.blocks = static_cast<std::size_t>(state_.grid.slots());
+    e.dt = copy.last_step().dt;
+    e.limit = first.limit;
+    e.steps = static_cast<std::int64_t>((t_end - state_.time) / e.dt) + 1;
+    e.seconds = seconds * static_cast<Real>(e.steps);
+    e.megabytes = 1e-6 * static_cast<Real>(memory_bytes());
+    return e;
+  }
+
+  /// Displacement of a solid point since the start (or since equilibrate()) [m].
+  Vec<dim> displacement(std::size_t batch, int lane) const {
+    const auto id = static_cast<std::size_t>(state_.solid.at(field::id, batch)[lane]);
+    Vec<dim> u;
+    for (int d = 0; d < dim; ++d)
+      u[d] = state_.solid.at(field::position, batch, d)[lane] -
+             start_[id * dim + static_cast<std::size_t>(d)];
+    return u;
+  }
+
+  /// Restarts the water count: what is stored now becomes `initial`.
+  void reset_balances() {
+    for (auto& h : state_.held) h.inflow = h.outflow = 0;
+    count_initial();
+  }
+
+  /// Direct access for hosts that couple their own code to a run; keep the state consistent.
+  State<M>& mutable_state() noexcept { return state_; }
+
+ private:
+  bool has_new_liquid() const {
+    if constexpr (has_liquid<M>)
+      return state_.liquid.has_new();
+    else
+      return false;
+  }
+
+  void collect_walls(const Scene<M>& scene) {
+    walls_.fixed = scene.template conditions<bc::Fixed>();
+    walls_.roller = scene.template conditions<bc::Roller>();
+    if constexpr (has_skeleton<M>) {
+      walls_.frictional = scene.template conditions<bc::Frictional>();
+      walls_.moving = scene.template conditions<bc::PrescribedVelocity<dim>>();
+      for (const auto& m : walls_.moving) {
+        state_.factors.push_back(m.time_factor);
+        walls_.moving_factor.push_back(state_.factors.size() - 1);
+      }
+    }
+  }
+
+  /// Sorts both point sets and makes the blocks they need.
+  void sort() {
+    std::vector<char> occupied(state_.grid.block_count(), 0);
+    state_.solid.mark_blocks(state_.grid, occupied);
+    if constexpr (has_liquid<M>) state_.liquid.mark_blocks(state_.grid, occupied);
+    state_.grid.rebuild(occupied);
+    const int groups = static_cast<int>(state_.soils.size()) + 1;
+    state_.solid.sort(state_.grid, groups);
+    if constexpr (has_liquid<M>) state_.liquid.sort(state_.grid, groups);
+    resize_grid();
+    detail::flag_nodes(state_, walls_);
+    state_.slack = 0;
+  }
+
+  void resize_grid() {
+    auto& n = state_.nodes;
+    const std::size_t size = state_.grid.size();
+    const auto fresh = [size](auto& records) { records.assign(size, {}); };
+    if constexpr (is_deformable<M>) {
+      fresh(n.solid_in);
+      fresh(n.solid_out);
+    }
+    if constexpr (has_liquid<M>) {
+      for (auto* r : {&n.liquid_in, &n.liquid_out, &n.mixture, &n.pore, &n.free, &n.content,
+                      &n.materials, &n.relative})
+        fresh(*r);
+      n.cell.assign(size, {});
+      n.dof.assign(size, -1);
+      n.face.assign(size * dim, {});
+      n.retry.assign(static_cast<std::size_t>(state_.grid.slots()), 0);
+    }
+  }
+
+  void remember_start() {
+    start_.assign(state_.solid.size() * dim, 0);
+    state_.solid.for_each([&](std::size_t b, int l) {
+      const auto id = static_cast<std::size_t>(state_.solid.at(field::id, b)[l]);
+      for (int d = 0; d < dim; ++d)
+        start_[id * dim + static_cast<std::size_t>(d)] = state_.solid.at(field::position, b, d)[l];
+    });
+  }
+
+  /// Speed of sound in the dry skeleton and of the points, for the first step.
+  void start_wave_speed() {
+    StepSums& s = state_.sums[0];
+    if constexpr (is_deformable<M>) {
+      for (const auto& soil : state_.soils)
+        s.max_wave2 = std::max(s.max_wave2, soil.p_wave_modulus / (soil.material.solid_density *
+                                                                   (1 - soil.material.porosity)));
+      s.max_speed2 = max_speed2(state_.solid);
+    }
+    if constexpr (has_liquid<M>) s.max_speed2 = std::max(s.max_speed2, max_speed2(state_.liquid));
+  }
+  template <class Points>
+  static Real max_speed2(const Points& points) {
+    Real most = 0;
+    points.for_each([&](std::size_t b, int l) {
+      Real v2 = 0;
+      for (int d = 0; d < dim; ++d) {
+        const Real v = points.at(field::velocity, b, d)[l];
+        v2 += v * v;
+      }
+      most = std::max(most, v2);
+    });
+    return most;
+  }
+
+  void count_initial() {
+    Real pore = 0, free = 0;
+    sum_water(pore, free);
+    initial_water_ = pore + free;
+    initial_solid_ = solid_balance().stored;
+  }
+  void sum_water([[maybe_unused]] Real& pore, [[maybe_unused]] Real& free) const {
+    if constexpr (has_liquid<M>)
+      state_.liquid.for_each([&](std::size_t b, int l) {
+        (state_.liquid.group(b) == state_.free_group() ? free : pore) +=
+            state_.liquid.at(field::mass, b)[l];
+      });
+  }
+
+  /// Sum of nodal inertia over sum of weight (or of mass where there is no gravity).
+  Real out_of_balance() const {
+    Real force = 0, weight = 0;
+    const Real g = std::max(state_.gravity.norm(), 1e-3);
+    for (std::size_t i = 0; i + Block<dim>::cells < state_.nodes.solid_in.size(); ++i) {
+      const Real m = state_.nodes.solid_in[i][lane::mass];
+      if (!(m > 0)) continue;
+      Real a2 = 0;
+      for (int d = 0; d < dim; ++d) {
+        const Real a = state_.nodes.solid_out[i][lane::increment + d] / state_.dt;
+        a2 += a * a;
+      }
+      force += m * std::sqrt(a2);
+      weight += m * g;
+    }
+    return weight > 0 ? force / weight : 0;
+  }
+
+  /// Zero velocity, time and displacement; water content from pressure and porosity.
+  void restart_at_rest() {
+    stop(state_.solid);
+    if constexpr (has_liquid<M>) {
+      stop(state_.liquid);
+      state_.liquid.for_each([&](std::size_t b, int l) {
+        auto& points = state_.liquid;
+        if (points.group(b) == state_.free_group() || !(points.at(field::mass, b)[l] > 0)) return;
+        const auto& material = state_.soils[static_cast<std::size_t>(points.group(b))].material;
+        const auto theta = swrc::water_content<Real>(
+            material.retention, points.at(field::liquid_pressure, b)[l],
+            points.at(field::porosity, b)[l], 1 / state_.water.bulk_modulus);
+        points.at(field::mass, b)[l] =
+            state_.water.density * points.at(field::volume, b)[l] * theta.value;
+      });
+    }
+    for (StepSums& s : state_.sums) s.max_speed2 = 0;
+    state_.time = 0;
+    state_.step = 0;
+    remember_start();
+    reset_balances();
+  }
+  template <class Points>
+  static void stop(Points& points) {
+    for (std::size_t b = 0; b < points.batches(); ++b) {
+      for (int d = 0; d < dim; ++d) points.store(field::velocity, b, d, Lanes(0.0));
+      if constexpr (Points::fields::template has<field::Affine>)
+        for (int d = 0; d < dim * dim; ++d) points.store(field::affine, b, d, Lanes(0.0));
+    }
+  }
+
+  std::size_t memory_bytes() const {
+    std::size_t records = is_deformable<M> ? 2 : 0;
+    std::size_t bytes = state_.solid.batches() * State<M>::Solid::stride * 8;
+    if constexpr (has_liquid<M>) {
+      bytes += state_.liquid.batches() * State<M>::Liquid::stride * 8;
+      records += 8;
+      bytes += state_.grid.size() * (sizeof(Cell<dim>) + dim * sizeof(FaceFlux) + 4);
+    }
+    return bytes + state_.grid.size() * (records * sizeof(Record) + 2);
+  }
+
+  State<M> state_;
+  detail::Walls<dim> walls_;
+  std::vector<Real> start_;
+  Real initial_water_ = 0, initial_solid_ = 0;
+  StepReport last_;
+};
+
+}  // namespace vadose
