@@ -32,6 +32,7 @@ class Box {
   Vec<Dim> high = Vec<Dim>::Constant(unset);  ///< largest coordinates [m]
 
   Box() = default;
+  /// From the smallest and the largest coordinates [m]; nothing is checked.
   Box(const Vec<Dim>& lowest, const Vec<Dim>& highest) : low(lowest), high(highest) {}
   /// Box<2>{{x0, y0}, {x1, y1}}.
   Box(const Real (&lowest)[Dim], const Real (&highest)[Dim])
@@ -51,6 +52,7 @@ class Box {
       if (!(low[d] <= high[d])) return true;
     return false;
   }
+  /// x [m] is inside or on a bound; false where a coordinate is NaN.
   bool contains(const Vec<Dim>& x) const {
     for (int d = 0; d < Dim; ++d)
       if (!(x[d] >= low[d] && x[d] <= high[d])) return false;
@@ -79,6 +81,7 @@ class Region {
   Region(Test test, const Box<Dim>& bounds)
       : test_(std::make_shared<const Holder<Test>>(std::move(test))), bounds_(bounds) {}
 
+  /// x [m] belongs to the region.
   bool contains(const Vec<Dim>& x) const { return bounds_.contains(x) && test_->contains(x); }
   /// A box around the region; infinite where the region is unbounded, perhaps not the smallest.
   const Box<Dim>& bounding_box() const noexcept { return bounds_; }

@@ -4,6 +4,8 @@
 /// \file
 /// Step 1 of DESIGN: from liquid points to cells: water, pores, fill, kind, pressure unknowns.
 
+#include <algorithm>
+
 #include <vadose/kernel/batch.hpp>
 
 namespace vadose::kernel {
@@ -131,11 +133,12 @@ struct CellView {
 
   const State<M>& state;
   const std::int32_t* tile;  ///< entries around the block
+  int slot;                  ///< the block
   Index<dim> cell;           ///< coordinates in the grid
   int at;                    ///< own position in the tile
 
-  CellView(const State<M>& s, const Index<dim>& local, int slot)
-      : state(s), tile(s.grid.tile(slot)), at(BlockGrid<dim>::tile_index(local)) {
+  CellView(const State<M>& s, const Index<dim>& local, int block)
+      : state(s), tile(s.grid.tile(block)), slot(block), at(BlockGrid<dim>::tile_index(local)) {
     const Index<dim> first = s.grid.first_cell(slot);
     for (int d = 0; d < dim; ++d) cell[d] = first[d] + local[d];
   }
@@ -291,6 +294,7 @@ void gather_cell(State<M>& state, const CellView<M>& view) {
           at_air = true;
       }
   cell.at_air = at_air;
+  if (at_air && soil) nodes.surface[static_cast<std::size_t>(view.slot)] = 1;
   cell.material = state.soils.size() > 1 ? largest(materials, static_cast<int>(state.soils.size()))
                                          : std::uint8_t{0};
   cell.pore_volume = soil ? pore[lane::pore_volume] : 0;
@@ -321,6 +325,7 @@ void gather_cell(State<M>& state, const CellView<M>& view) {
 /// Gathers every cell that owns its pressure.
 template <class M>
 void gather_cells(State<M>& state) {
+  std::fill(state.nodes.surface.begin(), state.nodes.surface.end(), char{0});
   for_cells(state.grid, state.options.threads,
             [&](std::int32_t e, const Index<State<M>::dim>& local, int slot, int) {
               if (state.nodes.dof[static_cast<std::size_t>(e)] != e) return;

@@ -36,6 +36,8 @@ inline constexpr int free_position = 4;  ///< first of three, V x [m4]
 // Second record of a cell: liquid momentum, then water content and storage at a trial pressure.
 inline constexpr int content = 4;  ///< sum V theta(p) [m3]
 inline constexpr int storage = 5;  ///< sum V d(theta)/dp [m3/Pa]
+inline constexpr int surface_rate = 6;    ///< sum V tr(grad v) of solid points in cells at air
+inline constexpr int surface_volume = 7;  ///< sum V of these points
 }  // namespace lane
 
 /// What fills a cell.
@@ -109,6 +111,7 @@ struct GridState {
   AlignedVector<Record> relative;    ///< n (v^l - v^s) and mean face H of a node
   std::vector<Real> ledger_in;       ///< inflow of a block through each HeldPressure [kg]
   std::vector<Cell<Dim>> cell;
+  std::vector<char> surface;         ///< blocks with soil cells at air, one per slot
   std::vector<char> retry;        ///< blocks whose pressures are not found yet, one per slot
   std::vector<std::int32_t> dof;  ///< entry of the cell whose pressure a cell uses, -1: none
   std::vector<FaceFlux> face;     ///< Dim per cell

@@ -58,7 +58,7 @@ void quad_coordinates(const State<M>& state, const Index<State<M>::dim>& cell,
 
 /// Adds one cell's share to a node. corner: which corner of the cell the node is.
 template <class M>
-void add_cell(const State<M>& state, const Cell<State<M>::dim>& c, const Index<State<M>::dim>& cell,
+void add_cell([[maybe_unused]] const State<M>& state, const Cell<State<M>::dim>& c, const Index<State<M>::dim>& cell,
               const Index<State<M>::dim>& corner, NodeSums<State<M>::dim>& node) noexcept {
   constexpr int dim = State<M>::dim;
   Real xi[dim];
@@ -92,7 +92,7 @@ void add_cell(const State<M>& state, const Cell<State<M>::dim>& c, const Index<S
 
 /// Adds the pull of a held pressure at an open surface or wall: - p_held N_I n dA.
 template <class M>
-void add_held(const State<M>& state, const FaceFlux& face, const Cell<State<M>::dim>& soil,
+void add_held([[maybe_unused]] const State<M>& state, const FaceFlux& face, const Cell<State<M>::dim>& soil,
               bool wall, bool on_soil_node, int axis, NodeSums<State<M>::dim>& node) noexcept {
   if (face.held_pressure == 0) return;
   constexpr int dim = State<M>::dim;

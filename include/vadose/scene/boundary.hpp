@@ -124,6 +124,7 @@ inline void at_most_one(int given, std::string_view alternatives) {
 }  // namespace check
 
 /// Boundary conditions. `region` limits a condition to a part of the face, by node position.
+/// validate(dim) raises SetupError unless the values suit a scene of `dim` dimensions.
 namespace bc {
 
 /// Rough rigid wall: no velocity of the solid, no flow of liquid through it.

@@ -35,6 +35,7 @@ struct LiquidProperties {
   Real bulk_modulus = 2.2e9;                          ///< K [Pa], > 0
   [[no_unique_address]] typename M::Liquid law = {};  ///< viscous law of free water
 
+  /// Raises SetupError unless all values are in range.
   void validate() const {
     check::in_context("liquid", [&] {
       check::positive("density", density, "kg/m3");
@@ -94,6 +95,7 @@ class Scene {
   Vec<dim> gravity = Vec<dim>::Zero();  ///< [m/s2]; a centrifuge at 30 g has 30 x 9.81
   LiquidProperties<M> liquid;           ///< water by default
 
+  /// Empty scene; refuses a box or cell size that do not fit.
   explicit Scene(const Domain<dim>& domain)
       : box_(domain.box), cell_size_(domain.cell_size), cells_(detail::count_cells(domain)) {
     if (M::Kinematics::axisymmetric && !(box_.low[0] >= 0))
@@ -147,14 +149,15 @@ class Scene {
                   "vadose: this boundary condition acts on the liquid and the model has NoLiquid");
     static_assert(has_skeleton<M> || !acts_on_skeleton<Condition>,
                   "vadose: this boundary condition acts on soil and the model has NoSkeleton");
-    check::in_context(Condition::name, [&] {
-      condition.validate(dim);
-      if constexpr (requires { condition.region; }) check_reach(condition.region);
-    });
-    if constexpr (std::is_same_v<Condition, bc::Drained>) {
-      store(condition.template prescribed<dim>());
-    } else {
-      store(condition);
+    if constexpr (is_known<Condition>) {
+      check::in_context(Condition::name, [&] {
+        condition.validate(dim);
+        if constexpr (requires { condition.region; }) check_reach(condition.region);
+      });
+      if constexpr (std::is_same_v<Condition, bc::Drained>)
+        store(condition.template prescribed<dim>());
+      else
+        store(condition);
     }
   }
 
