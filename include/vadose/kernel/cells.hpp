@@ -294,7 +294,6 @@ void gather_cell(State<M>& state, const CellView<M>& view) {
           at_air = true;
       }
   cell.at_air = at_air;
-  if (at_air && soil) nodes.surface[static_cast<std::size_t>(view.slot)] = 1;
   cell.material = state.soils.size() > 1 ? largest(materials, static_cast<int>(state.soils.size()))
                                          : std::uint8_t{0};
   cell.pore_volume = soil ? pore[lane::pore_volume] : 0;
@@ -325,7 +324,6 @@ void gather_cell(State<M>& state, const CellView<M>& view) {
 /// Gathers every cell that owns its pressure.
 template <class M>
 void gather_cells(State<M>& state) {
-  std::fill(state.nodes.surface.begin(), state.nodes.surface.end(), char{0});
   for_cells(state.grid, state.options.threads,
             [&](std::int32_t e, const Index<State<M>::dim>& local, int slot, int) {
               if (state.nodes.dof[static_cast<std::size_t>(e)] != e) return;

@@ -9,67 +9,9 @@
 
 namespace vadose::kernel {
 
-/// Whether a block or one around it holds soil cells at air.
-template <class M>
-bool near_surface(const State<M>& state, int slot) {
-  bool found = false;
-  for_cube<State<M>::dim>(-1, 2, [&](const Index<State<M>::dim>& step) {
-    Index<State<M>::dim> c = state.grid.first_cell(slot);
-    for (int d = 0; d < State<M>::dim; ++d) c[d] += step[d] * Block<State<M>::dim>::edge;
-    const std::int32_t e = state.grid.entry(c);
-    found = found ||
-            (e != state.grid.outside() &&
-             state.nodes.surface[static_cast<std::size_t>(e / Block<State<M>::dim>::cells)]);
-  });
-  return found;
-}
-
-/// Volume rate of soil cells at air, from the gradients at the solid points that carry the
-/// liquid's stress there: force and volume rate stay adjoint. (They must: a mismatch of 1e-3
-/// makes undrained soil grow by 1e-3 of its highest frequency.)
-template <class M>
-void sum_surface_rates(State<M>& state) {
-  constexpr int dim = State<M>::dim;
-  for_blocks_adding(state.solid, state.options.threads, [&](const BatchRange& range, int thread) {
-    if (!near_surface(state, range.slot)) return;
-    Tile<dim>& nodes = state.tile(thread, 0);
-    Tile<dim>& cell_sums = state.tile(thread, 1);
-    nodes.read(state.grid, range.slot, state.nodes.solid_out);
-    const TileFrame<dim> frame = tile_frame(state.grid, range.slot);
-    for (std::size_t b = range.begin; b < range.end; ++b) {
-      Lanes x[dim], half[dim];
-      load_positions(state.solid, b, x);
-      load_half_sizes(state.solid, b, half);
-      Stencil<typename M::Shape, dim> stencil;
-      stencil.evaluate(frame, x, half);
-      Gather<true, typename M::Shape, dim> gather;
-      gather.sum(stencil, nodes.record);
-      gather.by_field();
-      Lanes trace = gather.value[lane::velocity] *
-                    over_radius<typename State<M>::Kinematics, dim>(x, Real(0));
-      for (int d = 0; d < dim; ++d) trace += gather.slope[d][lane::velocity + d];
-      CellFinder<dim> cells;
-      cells.find(frame, x);
-      const Lanes volume = state.solid.load(field::volume, b);
-      Lanes record[lane_count];
-      for (auto& r : record) r = Lanes(0.0);
-      record[lane::surface_rate] = volume * trace;
-      record[lane::surface_volume] = volume;
-      add_to_cells(cells, record, cell_sums);
-    }
-    cell_sums.add_to(state.grid, range.slot, state.nodes.content);
-    for (auto& r : nodes.record) r = Record{};
-  });
-}
-
-/// Mean of the volume rates of the solid points in a cell at air and its slivers.
-template <class M>
-Real surface_rate(const CellView<M>& view) {
-  const Record sums = member_sums(view, view.state.nodes.content);
-  return sums[lane::surface_volume] > 0 ? sums[lane::surface_rate] / sums[lane::surface_volume] : 0;
-}
-
-/// Volume rate of a cell: div v^s of soil, div q of free water, at its quadrature point.
+/// Volume rates of a cell at its quadrature point: div v^s of the skeleton, div q of free water.
+/// The gradients are those of the pressure force, so that force and rate are adjoint. (They must
+/// be: a mismatch of 1e-3 lets undrained soil grow by 1e-3 of its highest frequency.)
 template <class M>
 void find_rates(State<M>& state) {
   constexpr int dim = State<M>::dim;
@@ -79,15 +21,10 @@ void find_rates(State<M>& state) {
               if (nodes.dof[static_cast<std::size_t>(e)] != e) return;
               const CellView<M> view(state, local, slot);
               auto& c = nodes.cell[static_cast<std::size_t>(e)];
-              if constexpr (is_deformable<M>) {
-                if (c.kind == CellKind::soil && c.at_air) {
-                  c.rate = surface_rate(view);
-                  return;
-                }
-              }
               Real xi[dim];
               quad_coordinates(state, view.cell, c, xi);
               c.rate = 0;
+              c.skeleton_rate = 0;
               for_cube<dim>(0, 2, [&](const Index<dim>& corner) {
                 int at = view.at;
                 for (int d = 0; d < dim; ++d) at += corner[d] * BlockGrid<dim>::tile_stride(d);
@@ -95,10 +32,10 @@ void find_rates(State<M>& state) {
                 CornerFunction<dim> shape(xi, corner, 1 / state.grid.cell_size());
                 if constexpr (State<M>::Kinematics::axisymmetric)
                   shape.gradient[0] += shape.value / c.quad_point[0];
-                if (c.kind == CellKind::free) {
-                  for (int d = 0; d < dim; ++d) c.rate += shape.gradient[d] * nodes.mixture[i][d];
-                } else if constexpr (is_deformable<M>) {
-                  for (int d = 0; d < dim; ++d) c.rate += shape.gradient[d] * nodes.solid_out[i][d];
+                for (int d = 0; d < dim; ++d) {
+                  if (c.kind == CellKind::free) c.rate += shape.gradient[d] * nodes.mixture[i][d];
+                  if constexpr (is_deformable<M>)
+                    c.skeleton_rate += shape.gradient[d] * nodes.solid_out[i][d];
                 }
               });
             });
@@ -274,7 +211,6 @@ void find_gains(State<M>& state) {
 /// Step 4 (fluxes) and 8 (gains of cells).
 template <class M>
 void exchange_water(State<M>& state) {
-  if constexpr (is_deformable<M>) sum_surface_rates(state);
   find_rates(state);
   if constexpr (has_skeleton<M>) {
     if (state.frozen) return;

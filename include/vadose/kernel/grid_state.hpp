@@ -34,10 +34,10 @@ inline constexpr int free_water = 1;     ///< m [kg]
 inline constexpr int free_pressure = 3;  ///< V p [J]
 inline constexpr int free_position = 4;  ///< first of three, V x [m4]
 // Second record of a cell: liquid momentum, then water content and storage at a trial pressure.
-inline constexpr int content = 4;  ///< sum V theta(p) [m3]
-inline constexpr int storage = 5;  ///< sum V d(theta)/dp [m3/Pa]
-inline constexpr int surface_rate = 6;    ///< sum V tr(grad v) of solid points in cells at air
-inline constexpr int surface_volume = 7;  ///< sum V of these points
+inline constexpr int content = 4;          ///< sum V theta(p) [m3]
+inline constexpr int storage = 5;          ///< sum V d(theta)/dp [m3/Pa]
+inline constexpr int skeleton_volume = 6;  ///< sum V of the solid points [m3]
+inline constexpr int mean_stress = 7;      ///< sum V tr(sigma*)/3 [J]
 }  // namespace lane
 
 /// What fills a cell.
@@ -65,7 +65,9 @@ struct Cell {
   Real quad_point[Dim] = {};        ///< where: cell centre, or centroid of a cut cell [m]
   Real quad_pressure = 0;           ///< pressure there [Pa]
   Real fill = 0;                    ///< filled fraction of the cell, slivers included
-  Real rate = 0;                    ///< div v^s (soil) or div q (free) [1/s]
+  Real rate = 0;                    ///< div q of free water [1/s]
+  Real skeleton_rate = 0;           ///< div v^s [1/s]
+  Real mean_stress = 0;             ///< mean Bishop stress of the skeleton in the cell [Pa]
   Real gain = 0;                    ///< water received in the step [kg]
   Real limit = 1;                   ///< donor limiter on outflow
   Real mean_velocity[Dim] = {};     ///< of the water, mass weighted [m/s]
@@ -111,7 +113,6 @@ struct GridState {
   AlignedVector<Record> relative;    ///< n (v^l - v^s) and mean face H of a node
   std::vector<Real> ledger_in;       ///< inflow of a block through each HeldPressure [kg]
   std::vector<Cell<Dim>> cell;
-  std::vector<char> surface;         ///< blocks with soil cells at air, one per slot
   std::vector<char> retry;        ///< blocks whose pressures are not found yet, one per slot
   std::vector<std::int32_t> dof;  ///< entry of the cell whose pressure a cell uses, -1: none
   std::vector<FaceFlux> face;     ///< Dim per cell

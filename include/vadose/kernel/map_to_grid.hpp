@@ -4,7 +4,7 @@
 /// \file
 /// Step 3, [Zhan] 3.4 (a): mass, momentum, stress and volume of the points to the nodes.
 
-#include <vadose/kernel/cells.hpp>
+#include <vadose/kernel/pressure.hpp>
 #include <vadose/policy/shape/linear.hpp>
 
 namespace vadose::kernel {
@@ -58,28 +58,12 @@ VADOSE_INLINE SymTensor<Lanes, State<M>::stress_size> load_stress(const State<M>
   return stress;
 }
 
-/// S p of the cells of a batch that touch air; zero elsewhere. There the liquid's part of the
-/// total stress is integrated by the solid points themselves, so that a free surface under
-/// suction is free of total stress node by node.
-template <class M>
-VADOSE_INLINE Lanes surface_liquid_stress(const State<M>& state,
-                                          const CellFinder<State<M>::dim>& cells,
-                                          const std::int32_t* entries) noexcept {
-  Lanes sp(0.0);
-  for (int l = 0; l < lane_count; ++l) {
-    const std::int32_t owner = state.nodes.dof[static_cast<std::size_t>(entries[cells.index[l]])];
-    if (owner < 0) continue;
-    const auto& cell = state.nodes.cell[static_cast<std::size_t>(owner)];
-    if (cell.kind == CellKind::soil && cell.at_air) sp.set(l, cell.saturation * cell.pressure);
-  }
-  return sp;
-}
-
-/// Adds one batch of solid points to a tile.
+/// Adds one batch of solid points to a tile of nodes. In models with liquid the mean stress goes
+/// to the cells instead, where it meets the liquid pressure: see add_cell().
 template <class M>
 VADOSE_INLINE void map_solid_batch(const State<M>& state, std::size_t b,
-                                   const TileFrame<State<M>::dim>& frame,
-                                   const std::int32_t* entries, Record* tile) noexcept {
+                                   const TileFrame<State<M>::dim>& frame, Record* tile,
+                                   [[maybe_unused]] Tile<State<M>::dim>& cell_sums) noexcept {
   constexpr int dim = State<M>::dim;
   using Shape = typename M::Shape;
   constexpr bool affine = M::Transfer::affine;
@@ -93,9 +77,15 @@ VADOSE_INLINE void map_solid_batch(const State<M>& state, std::size_t b,
   const Lanes volume = state.solid.load(field::volume, b);
   auto stress = load_stress(state, b);
   if constexpr (has_liquid<M>) {
+    const Lanes mean = stress.mean();
+    stress.add_isotropic(-mean);
     CellFinder<dim> cells;
     cells.find(frame, x);
-    stress.add_isotropic(-surface_liquid_stress(state, cells, entries));
+    Lanes record[lane_count];
+    for (auto& r : record) r = Lanes(0.0);
+    record[lane::skeleton_volume] = volume;
+    record[lane::mean_stress] = volume * mean;
+    add_to_cells(cells, record, cell_sums);
   }
   Scatter<true, affine, Shape, dim> scatter;
   Lanes velocity[dim];
@@ -126,21 +116,36 @@ VADOSE_INLINE void map_solid_batch(const State<M>& state, std::size_t b,
   scatter.add(stencil, tile);
 }
 
+/// Mean Bishop stress of every pressure cell.
+template <class M>
+void find_mean_stresses(State<M>& state) {
+  for_cells(state.grid, state.options.threads,
+            [&](std::int32_t e, const Index<State<M>::dim>& local, int slot, int) {
+              const auto i = static_cast<std::size_t>(e);
+              if (state.nodes.dof[i] != e) return;
+              const Record sums = member_sums(CellView<M>(state, local, slot), state.nodes.content);
+              const Real volume = sums[lane::skeleton_volume];
+              state.nodes.cell[i].mean_stress = volume > 0 ? sums[lane::mean_stress] / volume : 0;
+            });
+}
+
 /// Solid points to nodes: m, m v, -sum sigma V grad S, V.
 template <class M>
 void map_solid(State<M>& state) {
   constexpr int dim = State<M>::dim;
   clear(state.nodes.solid_in, state.options.threads);
   for_blocks_adding(state.solid, state.options.threads, [&](const BatchRange& range, int thread) {
-    Tile<dim>& tile = state.tile(thread);
+    Tile<dim>& tile = state.tile(thread, 0);
+    Tile<dim>& cell_sums = state.tile(thread, 1);
     const TileFrame<dim> frame = tile_frame(state.grid, range.slot);
-    const std::int32_t* entries = state.grid.tile(range.slot);
     for (std::size_t b = range.begin; b < range.end; ++b) {
       state.solid.prefetch(b + 2);
-      map_solid_batch(state, b, frame, entries, tile.record);
+      map_solid_batch(state, b, frame, tile.record, cell_sums);
     }
     tile.add_to(state.grid, range.slot, state.nodes.solid_in);
+    if constexpr (has_liquid<M>) cell_sums.add_to(state.grid, range.slot, state.nodes.content);
   });
+  if constexpr (has_liquid<M>) find_mean_stresses(state);
 }
 
 /// Moves points of slivers to the edge of the cell whose pressure they share, for their mapping:

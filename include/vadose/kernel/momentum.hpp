@@ -12,12 +12,13 @@ namespace vadose::kernel {
 /// What the cells around a node give it.
 template <int Dim>
 struct NodeSums {
-  Real volume = 0;            ///< V_c,I = sum f V_c N_I [m3]
-  Real force[Dim] = {};       ///< G_I = sum f V_c (p - p_held) grad N_I [N]
-  Real soil_force[Dim] = {};  ///< sum f V_c S p grad N_I [N], cells at air left out
-  Real soil_volume = 0;       ///< share of V_c,I in soil cells, bulk of soil only [m3]
-  Real pores = 0;             ///< sum of n over it [m3]
-  Real saturation[Dim] = {};  ///< upstream, mean over the faces across an axis
+  Real volume = 0;                ///< V_c,I = sum f V_c N_I [m3]
+  Real force[Dim] = {};           ///< G_I = sum f V_c (p - p_held) grad N_I [N]
+  Real soil_force[Dim] = {};      ///< sum f V_c S p grad N_I [N]
+  Real skeleton_force[Dim] = {};  ///< - sum f V_c (mean Bishop stress) grad N_I [N]
+  Real soil_volume = 0;           ///< share of V_c,I in soil cells, bulk of soil only [m3]
+  Real pores = 0;                 ///< sum of n over it [m3]
+  Real saturation[Dim] = {};      ///< upstream, mean over the faces across an axis
   Real conductivity[Dim] = {};
   Real head_gradient[Dim] = {};
   std::uint8_t material = 0;
@@ -57,9 +58,13 @@ void quad_coordinates(const State<M>& state, const Index<State<M>::dim>& cell,
 }
 
 /// Adds one cell's share to a node. corner: which corner of the cell the node is.
+/// The skeleton's mean stress acts here like the liquid's pressure, with the same quadrature: a
+/// free surface under suction (sigma* = S p) is then in balance node by node, and a stiff liquid
+/// does not lock the skeleton; the deviator acts through the points' own functions.
 template <class M>
-void add_cell([[maybe_unused]] const State<M>& state, const Cell<State<M>::dim>& c, const Index<State<M>::dim>& cell,
-              const Index<State<M>::dim>& corner, NodeSums<State<M>::dim>& node) noexcept {
+void add_cell([[maybe_unused]] const State<M>& state, const Cell<State<M>::dim>& c,
+              const Index<State<M>::dim>& cell, const Index<State<M>::dim>& corner,
+              NodeSums<State<M>::dim>& node) noexcept {
   constexpr int dim = State<M>::dim;
   Real xi[dim];
   quad_coordinates(state, cell, c, xi);
@@ -68,14 +73,12 @@ void add_cell([[maybe_unused]] const State<M>& state, const Cell<State<M>::dim>&
     shape.gradient[0] += shape.value / c.quad_point[0];
   const Real weight = c.quad_volume * shape.value;
   const Real soil_weight = weight * c.soil_share;
-  const bool with_soil = c.kind == CellKind::soil && !c.at_air;
   const Real p = c.quad_volume * c.quad_pressure;
   node.volume += weight;
   for (int d = 0; d < dim; ++d) {
     node.force[d] += p * shape.gradient[d];
-    // Free water carries p itself (S = 1).
-    if (with_soil || c.kind == CellKind::free)
-      node.soil_force[d] += c.saturation * p * shape.gradient[d];
+    node.soil_force[d] += c.saturation * p * shape.gradient[d];
+    node.skeleton_force[d] -= c.quad_volume * c.soil_share * c.mean_stress * shape.gradient[d];
   }
   if (c.kind == CellKind::soil) {
     node.has_soil = true;
@@ -92,8 +95,9 @@ void add_cell([[maybe_unused]] const State<M>& state, const Cell<State<M>::dim>&
 
 /// Adds the pull of a held pressure at an open surface or wall: - p_held N_I n dA.
 template <class M>
-void add_held([[maybe_unused]] const State<M>& state, const FaceFlux& face, const Cell<State<M>::dim>& soil,
-              bool wall, bool on_soil_node, int axis, NodeSums<State<M>::dim>& node) noexcept {
+void add_held([[maybe_unused]] const State<M>& state, const FaceFlux& face,
+              const Cell<State<M>::dim>& soil, bool wall, bool on_soil_node, int axis,
+              NodeSums<State<M>::dim>& node) noexcept {
   if (face.held_pressure == 0) return;
   constexpr int dim = State<M>::dim;
   const Real outward = face.soil_below ? 1 : -1;
@@ -446,6 +450,7 @@ void advance_node(State<M>& state, const CellView<M>& view) {
     else if constexpr (has_skeleton<M>)
       skeleton_volume = sums.soil_volume;
     porosity = nodal_porosity(sums, skeleton_volume);
+    for (int d = 0; d < dim; ++d) node.solid_force[d] += sums.skeleton_force[d];
     pressure_forces(sums, skeleton_volume, state.water.density, node);
   }
   if (state.options.damping > 0 && node.solid_mass > 0) damp(state.options.damping, node);

@@ -158,7 +158,7 @@ VADOSE_INLINE void update_half_sizes(Points& points, std::size_t b,
   }
 }
 
-/// Volume rates of the pressure cells of eight points; `otherwise` where there is none.
+/// Volume rates of the skeleton in the cells of eight points; `otherwise` where there is none.
 template <class M>
 VADOSE_INLINE Lanes cell_rates(const State<M>& state, const CellFinder<State<M>::dim>& cells,
                                const std::int32_t* entries, const Lanes& otherwise) noexcept {
@@ -167,7 +167,7 @@ VADOSE_INLINE Lanes cell_rates(const State<M>& state, const CellFinder<State<M>:
     const std::int32_t owner = state.nodes.dof[static_cast<std::size_t>(entries[cells.index[l]])];
     if (owner < 0) continue;
     const auto& cell = state.nodes.cell[static_cast<std::size_t>(owner)];
-    if (cell.kind == CellKind::soil) rate.set(l, cell.rate);
+    rate.set(l, cell.skeleton_rate);
   }
   return rate;
 }
@@ -241,7 +241,16 @@ VADOSE_INLINE void update_solid_batch(State<M>& state, std::size_t b,
   interpolate<true>(stencil, tile, motion);
 
   const Lanes hoop = motion.velocity[0] * over_radius<K, dim>(x, Real(0));
-  const auto rate = rate_of_deformation<n>(motion.gradient, hoop);
+  auto rate = rate_of_deformation<n>(motion.gradient, hoop);
+  Lanes volume_rate = rate.trace();
+  if constexpr (has_liquid<M>) {
+    // The volume follows the cell, in the strain as in the volume itself; shape follows the point.
+    CellFinder<dim> cells;
+    cells.find(frame, x);
+    const Lanes own = volume_rate;
+    volume_rate = cell_rates(state, cells, entries, own);
+    rate.add_isotropic((volume_rate - own) * Lanes(1.0 / 3.0));
+  }
   StrainStep<Lanes, n> step;
   step.dt = dt;
   for (int i = 0; i < n; ++i) step.increment[i] = Lanes(dt) * rate[i];
@@ -261,12 +270,6 @@ VADOSE_INLINE void update_solid_batch(State<M>& state, std::size_t b,
   if constexpr (state_size > 0)
     for (int i = 0; i < state_size; ++i) points.store(field::law_state, b, i, numbers[i]);
 
-  Lanes volume_rate = rate.trace();
-  if constexpr (has_liquid<M>) {
-    CellFinder<dim> cells;
-    cells.find(frame, x);
-    volume_rate = cell_rates(state, cells, entries, volume_rate);
-  }
   const Lanes volume = points.load(field::volume, b) * exp(Lanes(dt) * volume_rate);
   points.store(field::volume, b, volume);
   const Lanes mass = points.load(field::mass, b);
@@ -344,8 +347,8 @@ VADOSE_INLINE void exchange_batch(State<M>& state, std::size_t b,
       }
       mass[l] = after;
       // The storage at the start of the step predicts the pressure; it only starts the search.
-      const Real squeezed =
-          cell.rate * state.dt * cell.saturation * cell.pore_volume / max(cell.porosity, 1e-6);
+      const Real squeezed = cell.skeleton_rate * state.dt * cell.saturation * cell.pore_volume /
+                            max(cell.porosity, 1e-6);
       p += (cell.gain / state.water.density - squeezed) / max(cell.storage, 1e-30);
     }
     for (int d = 0; d < dim; ++d)

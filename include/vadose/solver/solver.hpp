@@ -296,7 +296,6 @@ class Solver {
       n.cell.assign(size, {});
       n.dof.assign(size, -1);
       n.face.assign(size * dim, {});
-      n.surface.assign(static_cast<std::size_t>(state_.grid.slots()), 0);
       n.retry.assign(static_cast<std::size_t>(state_.grid.slots()), 0);
     }
   }
