@@ -208,6 +208,21 @@ void find_gains(State<M>& state) {
     }
 }
 
+/// Pores of soil that free water fills for the most part (a free cell) stay full: what they lack or
+/// have too much passes between them and the free points of the cell.
+template <class M>
+void fill_submerged_pores(State<M>& state) {
+  for_pressure_cells(state, [&](Cell<State<M>::dim>& cell, std::int32_t, int) {
+    cell.pore_gain = 0;
+    if (cell.kind != CellKind::free || !(cell.soil_pores > 0)) return;
+    const Real full = state.water.density * cell.soil_pores *
+                      std::exp(max(0.0, cell.pressure) / state.water.bulk_modulus);
+    const Real wanted = full - cell.soil_water;
+    cell.pore_gain = min(wanted, 0.5 * max(0.0, cell.water + cell.gain));
+    cell.gain -= cell.pore_gain;
+  });
+}
+
 /// Step 4 (fluxes) and 8 (gains of cells).
 template <class M>
 void exchange_water(State<M>& state) {
@@ -217,6 +232,7 @@ void exchange_water(State<M>& state) {
     find_fluxes(state);
     limit_donors(state);
     find_gains(state);
+    fill_submerged_pores(state);
   }
 }
 

@@ -12,10 +12,10 @@ namespace vadose::kernel {
 template <class M>
 void find_conductivities(State<M>& state) {
   for_pressure_cells(state, [&](Cell<State<M>::dim>& cell, std::int32_t, int) {
-    if (cell.kind != CellKind::soil) return;
+    if (!(cell.soil_share > 0)) return;
     const auto& material = state.soils[cell.material].material;
     cell.saturated_conductivity =
-        conductivity::value<Real>(material.conductivity, 1, cell.porosity);
+        conductivity::value<Real>(material.conductivity, 1, cell.soil_porosity);
     cell.conductivity = cell.saturated_conductivity;
     if constexpr (is_unsaturated<M>) {
       if (cell.saturation < 1)

@@ -50,12 +50,16 @@ enum class CellKind : std::uint8_t {
 /// Pressure unknown of a cell and its surroundings.
 template <int Dim>
 struct Cell {
-  Real pressure = 0;                ///< p_c at the centroid [Pa]
-  Real saturation = 0;              ///< S_c = M_c / (rho_l sum n V), at most 1
-  Real porosity = 1;                ///< pore-weighted mean n
-  Real pore_volume = 0;             ///< sum n V [m3]
-  Real soil_share = 0;              ///< bulk volume of soil / water-bearing volume [-]
-  Real conductivity = 0;            ///< k(S_c, n) [m/s]
+  Real pressure = 0;       ///< p_c at the centroid [Pa]
+  Real saturation = 0;     ///< S_c = M_c / (rho_l sum n V), at most 1
+  Real porosity = 1;       ///< pore-weighted mean n
+  Real pore_volume = 0;    ///< sum n V [m3]
+  Real soil_share = 0;     ///< bulk volume of soil / water-bearing volume [-]
+  Real soil_porosity = 1;  ///< of the soil in the cell, also where free water fills most of it
+  Real soil_pores = 0;     ///< pore volume of that soil [m3]
+  Real soil_water = 0;     ///< pore water of that soil [kg]
+  Real pore_gain = 0;      ///< water the pores of a free cell take from its free points [kg]
+  Real conductivity = 0;   ///< k(S_c, n) [m/s]
   Real saturated_conductivity = 0;  ///< k(1, n) [m/s]
   Real water = 0;                   ///< M_c [kg]
   Real storage = 0;                 ///< sum V d(theta)/dp [m3/Pa]
@@ -64,7 +68,8 @@ struct Cell {
   Real quad_volume = 0;             ///< volume the pressure acts in, f V_c [m3]
   Real quad_point[Dim] = {};        ///< where: cell centre, or centroid of a cut cell [m]
   Real quad_pressure = 0;           ///< pressure there [Pa]
-  Real fill = 0;                    ///< filled fraction of the cell, slivers included
+  Real raw_fill = 0;                ///< filled fraction of the cell by itself
+  Real fill = 0;                    ///< filled fraction, slivers included; 1 away from air
   Real rate = 0;                    ///< div q of free water [1/s]
   Real skeleton_rate = 0;           ///< div v^s [1/s]
   Real mean_stress = 0;             ///< mean Bishop stress of the skeleton in the cell [Pa]

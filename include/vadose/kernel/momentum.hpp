@@ -22,6 +22,7 @@ struct NodeSums {
   Real conductivity[Dim] = {};
   Real head_gradient[Dim] = {};
   std::uint8_t material = 0;
+  int soil_cells = 0;           ///< cells around that hold soil
   bool closed_surface = false;  ///< touches soil and air, and no water passes
   bool has_soil = false;
   Real normal[Dim] = {};  ///< out of the soil, where closed_surface
@@ -80,11 +81,12 @@ void add_cell([[maybe_unused]] const State<M>& state, const Cell<State<M>::dim>&
     node.soil_force[d] += c.saturation * p * shape.gradient[d];
     node.skeleton_force[d] -= c.quad_volume * c.soil_share * c.mean_stress * shape.gradient[d];
   }
-  if (c.kind == CellKind::soil) {
+  if (c.soil_share > 0) {
     node.has_soil = true;
     node.material = c.material;
     node.soil_volume += soil_weight;
-    node.pores += soil_weight * c.porosity;
+    node.pores += soil_weight * c.soil_porosity;
+    ++node.soil_cells;
     for (int d = 0; d < dim; ++d) {
       node.saturation[d] += c.saturation;  // fallback where no face crosses the axis
       node.conductivity[d] += c.conductivity;
@@ -114,7 +116,7 @@ NodeSums<State<M>::dim> gather_node(const State<M>& state, const CellView<M>& vi
   constexpr int dim = State<M>::dim;
   const auto& nodes = state.nodes;
   NodeSums<dim> node;
-  int soil_cells = 0, air = 0, faces[dim] = {};
+  int air = 0, faces[dim] = {};
   Real saturation[dim] = {}, conductivity[dim] = {}, gradient[dim] = {};
   bool open = false, water = false;
   for_cube<dim>(0, 2, [&](const Index<dim>& corner) {
@@ -133,7 +135,6 @@ NodeSums<State<M>::dim> gather_node(const State<M>& state, const CellView<M>& vi
     if (inside && owner == view.tile[at]) {
       const auto& c = nodes.cell[e];
       add_cell(state, c, cell, corner, node);
-      soil_cells += c.kind == CellKind::soil;
       water = water || c.kind == CellKind::free;
     }
     // Faces whose plane goes through the node: lower faces of the cells on its upper side.
@@ -169,12 +170,12 @@ NodeSums<State<M>::dim> gather_node(const State<M>& state, const CellView<M>& vi
       node.saturation[d] = saturation[d] / faces[d];
       node.conductivity[d] = conductivity[d] / faces[d];
       node.head_gradient[d] = gradient[d] / faces[d];
-    } else if (soil_cells > 0) {
-      node.saturation[d] /= soil_cells;
-      node.conductivity[d] /= soil_cells;
+    } else if (node.soil_cells > 0) {
+      node.saturation[d] /= node.soil_cells;
+      node.conductivity[d] /= node.soil_cells;
     }
   }
-  node.closed_surface = soil_cells > 0 && air > 0 && !open && !water;
+  node.closed_surface = node.soil_cells > 0 && air > 0 && !open && !water;
   return node;
 }
 

@@ -351,6 +351,15 @@ VADOSE_INLINE void exchange_batch(State<M>& state, std::size_t b,
                             max(cell.porosity, 1e-6);
       p += (cell.gain / state.water.density - squeezed) / max(cell.storage, 1e-30);
     }
+    if (cell.kind == CellKind::free && cell.pore_gain != 0) {
+      const Real dm = cell.pore_gain * volume[l] * porosity[l] / cell.soil_pores;
+      const Real after = mass[l] + dm;
+      for (int d = 0; dm > 0 && d < dim; ++d) {
+        double& v = points.at(field::velocity, b, d)[l];
+        v = (mass[l] * v + dm * cell.mean_velocity[d]) / after;
+      }
+      mass[l] = after;
+    }
     for (int d = 0; d < dim; ++d)
       p += state.water.density * state.gravity[d] * (x[d][l] - cell.centroid[d]);
     if (!state.frozen) pressure[l] = p;
