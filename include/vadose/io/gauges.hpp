@@ -15,6 +15,7 @@
 #include <utility>
 #include <vector>
 
+#include <vadose/grid/region.hpp>
 #include <vadose/io/history.hpp>
 #include <vadose/io/sample.hpp>
 #include <vadose/policy/law/law_concept.hpp>
@@ -464,8 +465,8 @@ class Gauges {
   }
   template <class M>
   static void check_dim(int dim) {
-    if (dim != State<M>::dim)
-      check::fail("dimension", dim, "{" + std::to_string(State<M>::dim) + "}", "-");
+    constexpr const char* allowed[] = {"{1}", "{2}", "{3}"};
+    if (dim != State<M>::dim) check::fail("dimension", dim, allowed[State<M>::dim - 1], "-");
   }
   template <class M>
   static std::int64_t nearest_id(const State<M>& state, const Vec<State<M>::dim>& x) {

@@ -107,9 +107,12 @@ bool improve_pressure(Cell<Dim>& cell, Real content, Real storage, Real target, 
   if (std::fabs(excess) <= 1e-14 * cell.pore_volume) return true;
   if (cell.pressure <= floor && excess >= 0) return true;  // drier than any pressure sought
   Real next = cell.pressure - excess / max(storage, 1e-30 * cell.pore_volume);
-  // The storage at p = 0 says nothing about the dry side: go there in growing steps.
-  if (next < 0 && next < cell.pressure)
-    next = max(next, min(10 * cell.pressure, cell.pressure - 100));
+  // The storage of water says nothing about the dry side, nor does that at one suction about that
+  // at ten times as much: go there in growing steps.
+  if (cell.pressure > 0)
+    next = max(next, -100.0);
+  else
+    next = max(next, 10 * cell.pressure - 100);
   next = max(next, floor);
   if (!(next > cell.low && next < cell.high) && next != floor) {
     const Real middle = 0.5 * (cell.low + cell.high);
@@ -169,9 +172,15 @@ void solve_unsaturated(State<M>& state) {
   constexpr int dim = State<M>::dim;
   constexpr int max_passes = 60;
   auto& nodes = state.nodes;
+  // Bounds: over a cell and its slivers the head differs by less than `span`.
+  const Real span = 2 * state.water.density * state.gravity.norm() * state.grid.cell_size() + 1;
   for_pressure_cells(state, [&](Cell<dim>& cell, std::int32_t, int) {
-    cell.low = -1e10;
-    cell.high = 1e10;
+    if (cell.kind != CellKind::soil) return;
+    const Real filling = cell.water / (state.water.density * cell.pore_volume);
+    const Real compressed = filling > 1 ? state.water.bulk_modulus * std::log(filling) : 0;
+    cell.high = compressed + span;
+    cell.low = state.soils[cell.material].pressure_floor - span;
+    cell.pressure = min(max(cell.pressure, cell.low), cell.high);
   });
   for (int pass = 0; pass < max_passes; ++pass) {
     clear_content(state);

@@ -221,6 +221,10 @@ VADOSE_INLINE void move(State<M>& state, Points& points, std::size_t b, const ch
   sums.max_speed2 = max(sums.max_speed2, max_lane(select(alive & !fast, speed2, Lanes(0.0))));
 }
 
+/// Grains this far apart no longer follow the volume between them [-]: a skeleton that has come
+/// apart keeps this porosity.
+inline constexpr Real dispersed_porosity = 0.9;
+
 /// One batch of solid points.
 template <class M>
 VADOSE_INLINE void update_solid_batch(State<M>& state, std::size_t b,
@@ -270,7 +274,9 @@ VADOSE_INLINE void update_solid_batch(State<M>& state, std::size_t b,
   if constexpr (state_size > 0)
     for (int i = 0; i < state_size; ++i) points.store(field::law_state, b, i, numbers[i]);
 
-  const Lanes volume = points.load(field::volume, b) * exp(Lanes(dt) * volume_rate);
+  const Lanes grains = points.load(field::mass, b) * Lanes(1 / soil.material.solid_density);
+  Lanes volume = points.load(field::volume, b) * exp(Lanes(dt) * volume_rate);
+  if constexpr (has_liquid<M>) volume = min(volume, grains * Lanes(1 / (1 - dispersed_porosity)));
   points.store(field::volume, b, volume);
   const Lanes mass = points.load(field::mass, b);
   const Lanes alive_mass = max(mass, Lanes(1e-300));
@@ -470,9 +476,10 @@ VADOSE_INLINE void update_liquid_batch(State<M>& state, std::size_t b, int slot,
           carried.velocity[0] * over_radius<typename State<M>::Kinematics, dim>(x, Real(0));
       for (int d = 0; d < dim; ++d) trace += carried.gradient[d][d];
       const Lanes rate = cell_rates(state, cells, entries, trace);
-      const Lanes stretch = exp(Lanes(state.dt) * rate);
-      points.store(field::volume, b, points.load(field::volume, b) * stretch);
       const Lanes n = points.load(field::porosity, b);
+      const Lanes stretch =
+          min(exp(Lanes(state.dt) * rate), (Lanes(1.0) - n) * Lanes(1 / (1 - dispersed_porosity)));
+      points.store(field::volume, b, points.load(field::volume, b) * stretch);
       points.store(field::porosity, b, Lanes(1.0) - (Lanes(1.0) - n) / stretch);
       update_half_sizes(points, b, carried.gradient, state.dt, state.grid.cell_size());
       move(state, points, b, "liquid", carried.velocity, sums);
