@@ -31,7 +31,7 @@ class History {
       : columns_(columns.size()), file_(checked(path, columns)) {
     std::string head;
     for (const Quantity& c : columns)
-      head += (head.empty() ? "" : ",") + c.name + " [" + c.unit + "]";
+      head.append(head.empty() ? "" : ",").append(c.name + " [" + c.unit + "]");
     file_.write(head + "\n");
     file_.flush();
   }
@@ -48,7 +48,8 @@ class History {
     for (const Real value : values) {
       char text[40];
       std::snprintf(text, sizeof text, "%.17g", value);
-      row += (row.empty() ? "" : ",") + std::string(text);
+      if (!row.empty()) row += ',';
+      row += text;
     }
     file_.write(row + "\n");
     file_.flush();

@@ -191,7 +191,7 @@ class VtkSeries {
     for (const std::string& name : wanted_) {
       if (std::find(known.begin(), known.end(), name) != known.end()) continue;
       std::string list;
-      for (const std::string& k : known) list += (list.empty() ? "" : ", ") + k;
+      for (const std::string& k : known) list.append(list.empty() ? "" : ", ").append(k);
       throw OutputError("cannot write file '" + base_ + "': the model has no column '" + name +
                         "', only " + list);
     }

@@ -82,6 +82,8 @@ void find_flux(State<M>& state, const CellView<M>& view, int axis, FaceFlux& fac
     flux -= face_mobility(state, face, up.porosity, state.soils[up.material].material.unit_weight) *
             (face.head_gradient - mean_gradient);
   }
+  // Water enters or leaves at a held pressure only down its head gradient.
+  if (face.kind == FaceKind::surface && flux * face.head_gradient > 0) flux = 0;
   face.flux = face.area * flux;
 }
 
