@@ -340,6 +340,7 @@ void gather_cell(State<M>& state, const CellView<M>& view) {
 
   const bool full = members == 1 && !at_air;
   cell.fill = full ? 1 : fill;
+  cell.drop = false;
   cell.quad_volume = full ? view.volume() : wet;
   for (int d = 0; d < dim; ++d) cell.quad_point[d] = view.centre(d);
   if (full) return;
@@ -354,7 +355,16 @@ void gather_cell(State<M>& state, const CellView<M>& view) {
     plane[d] = view.centre(d) + shift * normal[d];
     flat = flat && std::fabs(plane[d] - cell.centroid[d]) < 0.25 * h;
   }
-  for (int d = 0; d < dim; ++d) cell.quad_point[d] = flat ? plane[d] : cell.centroid[d];
+  for (int d = 0; d < dim; ++d) {
+    // Near a cell boundary the nodes on the far side would have next to no volume.
+    const Real inside =
+        min(max(cell.centroid[d], view.centre(d) - 0.35 * h), view.centre(d) + 0.35 * h);
+    cell.quad_point[d] = flat ? plane[d] : inside;
+  }
+  // Drops: soil or water in a cell less than half full without a fuller neighbour of its kind is
+  // free of pressure and mean stress until it joins others.
+  cell.drop = members == 1 && cell.raw_fill < 0.5;
+  if (cell.drop) cell.quad_volume = 0;
 }
 
 /// Gathers every cell that owns its pressure.

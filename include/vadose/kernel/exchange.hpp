@@ -25,6 +25,7 @@ void find_rates(State<M>& state) {
               quad_coordinates(state, view.cell, c, xi);
               c.rate = 0;
               c.skeleton_rate = 0;
+              if (c.drop) return;
               for_cube<dim>(0, 2, [&](const Index<dim>& corner) {
                 int at = view.at;
                 for (int d = 0; d < dim; ++d) at += corner[d] * BlockGrid<dim>::tile_stride(d);

@@ -79,6 +79,7 @@ struct Cell {
   Real momentum_gain[Dim] = {};     ///< velocity change by exchanged momentum [m/s]
   CellKind kind = CellKind::none;
   bool at_air = false;        ///< a face of the cell is open to air
+  bool drop = false;          ///< stands alone: no force, no volume change
   std::uint8_t material = 0;  ///< of the largest bulk volume
 };
 

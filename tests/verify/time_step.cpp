@@ -1,0 +1,239 @@
+// SPDX-License-Identifier: MIT
+// The step that the solver takes: equal to C 2/omega of DESIGN section 3, close to the true limit
+// of the scheme on aligned points with linear shape functions, stable for every basis at default C.
+
+#include <doctest/doctest.h>
+
+#include "verify_support.hpp"
+
+#include <vadose/policy/shape/linear.hpp>
+#include <vadose/policy/shape/quadratic_b_spline.hpp>
+
+namespace {
+
+namespace vd = vadose;
+using vd::Real;
+using vd::Vec;
+
+template <class K, class S>
+struct Wet : vd::SaturatedModel<K> {
+  using Shape = S;
+};
+template <class K, class S>
+struct Moist : vd::UnsaturatedModel<K> {
+  using Shape = S;
+};
+template <class K, class S>
+struct Dry : vd::DryModel<K> {
+  using Shape = S;
+};
+struct Water : vd::FreeWaterModel<vd::Uniaxial> {};
+
+/// Step limit 2/omega of soil with pore water, drag implicit, written out as in DESIGN section 3,
+/// step 10.
+Real two_phase_step(Real h, Real stiffness, Real saturation, Real capacity, Real porosity,
+                    Real solid_density, Real bulk_modulus) {
+  const Real k_star = saturation / (saturation / bulk_modulus + capacity);
+  const Real ms = (1 - porosity) * solid_density, ml = 1000;
+  const Real tr =
+      k_star / ml +
+      (stiffness + saturation * (1 - porosity) * (1 - porosity) * k_star / porosity) / ms;
+  const Real det = k_star * stiffness / (ms * ml);
+  return 2 / std::sqrt(2 / (h * h) * (tr + std::sqrt(tr * tr - 4 * det)));
+}
+
+const Real stiffness = verify::oedometric_modulus(10e6, 0.33);
+
+/// A block of soil on a fixed base under smooth walls, `cells` wide and `tall` cells high, free on
+/// top (with one layer of air) or closed in all round.
+template <class M>
+vd::Scene<M> block(const vd::Material<M>& material, vd::SoilOptions<M::Kinematics::dim> soil,
+                   Real h, int cells, int tall, bool air = true) {
+  constexpr int dim = M::Kinematics::dim, up = dim - 1;
+  Vec<dim> low = Vec<dim>::Zero(), high = Vec<dim>::Constant(cells * h), top = high;
+  high[up] = (tall + (air ? 2 : 0)) * h;
+  top[up] = tall * h;
+  vd::Scene<M> scene({.box = {low, high}, .cell_size = h});
+  scene.add_soil(vd::box(low, top), material, soil);
+  scene.add(vd::bc::Fixed{.face = vd::Face::bottom});
+  return scene;
+}
+
+template <class M>
+vd::Material<M> dry_soil() {
+  return {.solid_density = 2600,
+          .porosity = 0.4,
+          .skeleton = {.young_modulus = 10e6, .poisson_ratio = 0.33}};
+}
+
+/// Gives every point a small velocity of alternating sign, rich in short waves.
+template <class M>
+Real kick(vd::Solver<M>& solver, Real speed) {
+  constexpr int dim = M::Kinematics::dim;
+  const auto set = [&](auto& points) {
+    points.for_each([&](std::size_t b, int l) {
+      for (int d = 0; d < dim; ++d) {
+        const auto id = static_cast<std::uint64_t>(points.at(vd::field::id, b)[l]);
+        points.at(vd::field::velocity, b, d)[l] =
+            speed *
+            (static_cast<Real>(vd::detail::mix(3 * id + static_cast<std::uint64_t>(d)) >> 11) *
+                 0x1p-52 -
+             1);
+      }
+    });
+  };
+  if constexpr (vd::has_skeleton<M>) set(solver.mutable_state().solid);
+  if constexpr (vd::has_liquid<M>) set(solver.mutable_state().liquid);
+  return speed;
+}
+
+template <class M>
+Real speed(const vd::Solver<M>& solver) {
+  Real most = verify::largest_speed(solver.solid());
+  if constexpr (vd::has_liquid<M>) most = std::max(most, verify::largest_speed(solver.liquid()));
+  return most;
+}
+
+/// Whether a kicked block stays calm for so many steps: speeds below `factor` times the kick.
+template <class M>
+bool is_stable(const vd::Scene<M>& scene, const vd::SolverOptions<M>& options, long steps,
+               Real factor) {
+  vd::Solver<M> solver(scene, options);
+  const Real start = kick(solver, 1e-9);
+  for (long i = 0; i < steps; ++i) {
+    if (solver.step().status != vd::Status::ok) return false;
+    if (i % 20 == 0 && !(speed(solver) < factor * start)) return false;
+  }
+  return speed(solver) < factor * start;
+}
+
+/// Largest stable Courant number, by bisection; 2 if all are stable.
+template <class M>
+Real critical_courant(const vd::Scene<M>& scene, long steps) {
+  vd::SolverOptions<M> options;
+  options.transfer = {.pic_rate = 0};
+  options.displacement_cap = 0.25;
+  Real low = 0.1, high = 1.999;
+  while (high - low > 0.002) {
+    options.courant = 0.5 * (low + high);
+    (is_stable(scene, options, steps, 100) ? low : high) = options.courant;
+  }
+  return low;
+}
+
+template <class K, class S>
+void check_default() {
+  constexpr int dim = K::dim;
+  const int tall = dim == 3 ? 4 : 6, wide = dim == 3 ? 2 : 3;
+  // Per axis 2 points, random offsets: harder than a lattice.
+  using D = Dry<K, S>;
+  using W = Wet<K, S>;
+  using U = Moist<K, S>;
+  const long steps = 2000;
+  CHECK(is_stable<D>(block<D>(dry_soil<D>(), {.jitter = 0.2}, 0.1, wide, tall), {}, steps, 5));
+  CHECK(is_stable<W>(block<W>(verify::saturated_soil<W>(), {.jitter = 0.2}, 0.1, wide, tall), {},
+                     steps, 5));
+  CHECK(is_stable<W>(block<W>(verify::saturated_soil<W>(1e-9), {.jitter = 0.2}, 0.1, wide, tall),
+                     {}, steps, 5));
+  if constexpr (dim < 3)
+    CHECK(
+        is_stable<U>(block<U>(verify::clay<U>(), {.jitter = 0.2, .suction = 1e3}, 0.1, wide, tall),
+                     {}, steps, 1e9));
+}
+
+}  // namespace
+
+TEST_CASE("time step: formula against the reference table (Table 1 rows)") {
+  const verify::Table table("timesteps.csv");
+  int compared = 0;
+  for (std::size_t i = 0; i < table.size(); ++i) {
+    if (table.text(i, "problem").rfind("4.1", 0) != 0 &&
+        table.text(i, "problem").rfind("4.2", 0) != 0)
+      continue;
+    // The table's K_f is S / (n (S/K + C)).
+    const Real k_star = 0.4 * table.number(i, "Kf_Pa"), h = table.number(i, "h_m");
+    const Real s = table.number(i, "Sr");
+    const Real w2 =
+        vd::kernel::two_phase_frequency2(table.number(i, "Eoed_Pa"), k_star, 0.4, s, 2600, 1000, h);
+    CAPTURE(table.text(i, "problem"));
+    CHECK(2 / std::sqrt(w2) == doctest::Approx(table.number(i, "h/c1_free")).epsilon(1e-6));
+    ++compared;
+  }
+  CHECK(compared >= 5);
+}
+
+TEST_CASE("time step: C 2/omega to 1e-6") {
+  using W = Wet<vd::Uniaxial, vd::shape::Gimp>;
+  using U = Moist<vd::Uniaxial, vd::shape::Gimp>;
+  using D = Dry<vd::Uniaxial, vd::shape::Gimp>;
+  const Real exact_wet = two_phase_step(0.1, stiffness, 1, 0, 0.4, 2600, 2.2e9);
+  for (const Real c : {0.5, 0.3})
+    for (const Real k : {1.0, 1e-3, 1e-12}) {
+      vd::Solver<W> wet(block<W>(verify::saturated_soil<W>(k), {}, 0.1, 1, 10), {.courant = c});
+      const auto step = wet.step();
+      CHECK(step.dt == doctest::Approx(c * exact_wet).epsilon(1e-6));
+      CHECK(step.limit == vd::StepLimit::two_phase);
+    }
+  vd::Solver<D> dry(block<D>(dry_soil<D>(), {}, 0.1, 1, 10));
+  const auto dry_step = dry.step();
+  CHECK(dry_step.dt == doctest::Approx(0.5 * 0.1 / std::sqrt(stiffness / 1560)).epsilon(1e-6));
+  CHECK(dry_step.limit == vd::StepLimit::skeleton);
+
+  for (const Real s : {1e3, 2e4, 187657.4354}) {
+    vd::Solver<U> moist(block<U>(verify::clay<U>(), {.suction = s}, 0.1, 1, 10));
+    const auto retention = moist.state().soils[0].material.retention;
+    const Real capacity = -retention.saturation_slope(s, 0.4);
+    const Real exact = std::min(
+        two_phase_step(0.1, stiffness, retention.saturation(s, 0.4), capacity, 0.4, 2600, 2.2e9),
+        0.1 / std::sqrt(stiffness / 1560));
+    const Real dt = moist.step().dt;
+    CAPTURE(s);
+    MESSAGE("suction ", s, ": dt over its formula - 1 = ", dt / (0.5 * exact) - 1);
+    CHECK(dt == doctest::Approx(0.5 * exact).epsilon(1e-6));
+  }
+
+  vd::Scene<Water> scene({.box = {Vec<1>(0.0), Vec<1>(1.0)}, .cell_size = 0.1});
+  scene.add_water(vd::box(Vec<1>(0.0), Vec<1>(0.8)),
+                  {.liquid_pressure = [](const Vec<1>&) { return 1e4; }});
+  vd::Solver<Water> water(scene);
+  const auto water_step = water.step();
+  CHECK(water_step.dt == doctest::Approx(0.5 * 0.1 / std::sqrt(2.2e9 / 1000)).epsilon(1e-6));
+  CHECK(water_step.limit == vd::StepLimit::water);
+}
+
+// Aligned points, linear shape functions, FLIP without PIC, 20 cells, free or closed top.
+TEST_CASE("time step: measured limit within 5 % of 2/omega") {
+  using D = Dry<vd::Uniaxial, vd::shape::Linear>;
+  using W = Wet<vd::Uniaxial, vd::shape::Linear>;
+  for (const bool air : {true, false}) {
+    CAPTURE(air);
+    const Real dry = critical_courant(block<D>(dry_soil<D>(), {}, 0.1, 1, 20, air), 4000);
+    MESSAGE("dry, ", air ? std::string("free top") : std::string("closed"),
+            ": measured / (2/omega) = ", dry);
+    CHECK(std::fabs(dry - 1) <= 0.05);
+    for (const Real k : {0.01, 1.0, 100.0}) {
+      const Real wet =
+          critical_courant(block<W>(verify::saturated_soil<W>(k), {}, 0.1, 1, 20, air), 4000);
+      MESSAGE("saturated, k ", k, " m/s, ", air ? std::string("free top") : std::string("closed"),
+              ": measured / (2/omega) = ", wet);
+      CAPTURE(k);
+      CHECK(std::fabs(wet - 1) <= 0.05);
+    }
+  }
+}
+
+TEST_CASE("time step: every basis is stable at the default C, 1D") {
+  check_default<vd::Uniaxial, vd::shape::Linear>();
+  check_default<vd::Uniaxial, vd::shape::Gimp>();
+  check_default<vd::Uniaxial, vd::shape::QuadraticBSpline>();
+}
+TEST_CASE("time step: every basis is stable at the default C, 2D") {
+  check_default<vd::PlaneStrain, vd::shape::Linear>();
+  check_default<vd::PlaneStrain, vd::shape::Gimp>();
+  check_default<vd::PlaneStrain, vd::shape::QuadraticBSpline>();
+}
+TEST_CASE("time step: every basis is stable at the default C, 3D") {
+  check_default<vd::ThreeDimensional, vd::shape::Linear>();
+  check_default<vd::ThreeDimensional, vd::shape::Gimp>();
+  check_default<vd::ThreeDimensional, vd::shape::QuadraticBSpline>();
+}
