@@ -15,6 +15,7 @@
 #include <vector>
 
 #include <vadose/policy/law/drucker_prager.hpp>
+#include <vadose/policy/law/newtonian_fluid.hpp>
 #include <vadose/policy/shape/gimp.hpp>
 #include <vadose/policy/shape/linear.hpp>
 #include <vadose/policy/shape/quadratic_b_spline.hpp>

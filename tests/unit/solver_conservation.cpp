@@ -37,6 +37,11 @@ vadose::Scene<M> two_bodies(Real suction = 1e4) {
     a.suction = suction;
     b.suction = 0.7 * suction;
   }
+  if constexpr (vadose::has_liquid<M>) {
+    // Gentle enough that no cell is drained to its last drop: see donor limiter.
+    a.velocity *= 0.3;
+    b.velocity *= 0.3;
+  }
   vadose::Scene<M> scene({.box = {Vec<dim>::Zero(), top}, .cell_size = h});
   scene.liquid.bulk_modulus = 2e7;
   scene.add_soil(vadose::box<dim>(low_a, high_a), soil<M>(), a);
@@ -135,11 +140,11 @@ TEST_CASE_TEMPLATE("affine transfer keeps the angular momentum of spinning, coll
 }
 
 TEST_CASE("saturated bodies collide and keep mass and momentum of both phases together") {
-  check_linear<Saturated<PlaneStrain>>(400, 0.3);
+  check_linear<Saturated<PlaneStrain>>(800);
 }
 
 TEST_CASE("unsaturated bodies collide and keep mass and momentum of both phases together") {
-  check_linear<Unsaturated<PlaneStrain>>(400, 0.3);
+  check_linear<Unsaturated<PlaneStrain>>(400);
 }
 
 TEST_CASE("mass of soil and free water is kept while they collide") {

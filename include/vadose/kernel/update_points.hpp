@@ -223,7 +223,7 @@ VADOSE_INLINE void move(State<M>& state, Points& points, std::size_t b, const ch
 
 /// Grains this far apart no longer follow the volume between them [-]: a skeleton that has come
 /// apart keeps this porosity.
-inline constexpr Real dispersed_porosity = 0.9;
+inline constexpr Real dispersed_porosity = 0.7;
 
 /// One batch of solid points.
 template <class M>
