@@ -89,6 +89,11 @@ struct Norm {
   Real mean() const { return count > 0 ? sum / count : vadose::unset; }
 };
 
+/// |value / reference - 1| <= tolerance, purely relative (doctest::Approx adds an absolute part).
+inline bool close(Real value, Real reference, Real tolerance) {
+  return std::fabs(value - reference) <= tolerance * std::fabs(reference);
+}
+
 /// Calls f(cell) for every cell of a kind that owns its pressure, as of the start of the last step.
 template <class Solver, class F>
 void for_cells(const Solver& solver, vadose::CellKind kind, F&& f) {

@@ -24,6 +24,7 @@ struct Walls {
 template <int Dim>
 bool on_face(const BlockGrid<Dim>& grid, const Index<Dim>& node, Face face) {
   const int a = axis(face, Dim);
+  if (a < 0 || a >= Dim) return false;  // no such face in this dimension
   return node[a] == (side(face) == 0 ? 0 : grid.cells()[a]);
 }
 
