@@ -1,0 +1,113 @@
+// SPDX-License-Identifier: MIT
+// Seepage through a rigid skeleton: hydrostatic rest and infiltration into sand against Richards'
+// equation.
+
+#include <doctest/doctest.h>
+
+#include "verify_support.hpp"
+
+namespace {
+
+namespace vd = vadose;
+using vd::Real;
+using vd::Vec;
+
+template <class K>
+struct Seepage : vd::UnsaturatedModel<K> {
+  using Skeleton = vd::law::Rigid;
+};
+using M1 = Seepage<vd::Uniaxial>;
+using M2 = Seepage<vd::PlaneStrain>;
+
+constexpr Real gravity = 9.81, porosity = 0.4;
+
+template <class M>
+vd::Material<M> sand() {
+  return {.name = "sand",
+          .porosity = porosity,
+          .lambda = 0.63,
+          .retention = {.a = 3, .porosity_dependent = false},
+          .conductivity = {.saturated_conductivity = 1e-4, .porosity_dependent = false}};
+}
+
+template <class M>
+void check_rest(Real jitter, Real water_table, long steps) {
+  constexpr int dim = M::Kinematics::dim, up = dim - 1;
+  Vec<dim> low = Vec<dim>::Zero(), high = Vec<dim>::Constant(0.4), top = high;
+  high[up] = 1.2;
+  top[up] = 1;
+  vd::Scene<M> scene({.box = {low, high}, .cell_size = 0.1});
+  scene.gravity[up] = -gravity;
+  scene.add_soil(vd::box(low, top), sand<M>(),
+                 {.jitter = jitter, .seed = 9, .water_table = water_table});
+  vd::Solver<M> solver(scene);
+  for (long i = 0; i < steps; ++i) {
+    const auto step = solver.step();
+    if (step.status != vd::Status::ok) FAIL(step.text());
+  }
+  verify::Norm norm;
+  verify::for_cells(solver, vd::CellKind::soil, [&](const auto& cell) {
+    norm.add(cell.pressure - 1000 * gravity * (water_table - cell.centroid[up]));
+  });
+  REQUIRE(norm.count > 0);
+  const Real v = verify::largest_speed(solver.liquid());
+  MESSAGE("dim ", dim, " jitter ", jitter, " water table ", water_table, ": max |dp| ", norm.max,
+          " Pa, speed ", v, " m/s, dt ", solver.last_step().dt, " s");
+  CHECK(norm.max <= 1);
+  CHECK(v <= 1e-6);
+}
+
+/// Water taken in [m] by 2 m of sand at S = 0.3 under p = 0 at the top. The water is softened to K =
+/// `bulk_modulus`: its density at the start is lower by exp(p0/K), its mass per volume with it. The
+/// deficit of mass that this makes, n S0 (1 - exp(p0/K)) over the wetted depth, is taken off.
+std::vector<Real> infiltrate(Real h, Real bulk_modulus, const std::vector<Real>& times) {
+  vd::Scene<M1> scene({.box = {Vec<1>(0.0), Vec<1>(2.0)}, .cell_size = h});
+  scene.gravity[0] = -gravity;
+  scene.liquid.bulk_modulus = bulk_modulus;
+  const Real saturation = 0.3;
+  scene.add_soil(vd::box(Vec<1>(0.0), Vec<1>(2.0)), sand<M1>(), {.saturation = saturation});
+  scene.add(vd::bc::PrescribedPressure<1>{.face = vd::Face::top, .pressure = 0});
+  vd::Solver<M1> solver(scene);
+  const Real p0 = solver.liquid().at(vd::field::liquid_pressure, 0)[0];
+  std::vector<Real> inflow;
+  for (const Real t : times) {
+    solver.advance_to(t);
+    const auto balance = solver.water_balance();
+    const Real raw = (balance.inflow - balance.outflow) / 1000;
+    const Real depth = raw / (porosity * (1 - saturation));
+    inflow.push_back(raw - depth * porosity * saturation * (1 - std::exp(p0 / bulk_modulus)));
+    MESSAGE("h ", h, " m, K ", bulk_modulus, " Pa, t ", t, " s: inflow ", inflow.back(), " m (raw ",
+            raw, "), steps ", solver.steps());
+    CHECK(std::fabs(balance.relative_closure()) <= 1e-12);
+  }
+  return inflow;
+}
+
+}  // namespace
+
+TEST_CASE("rigid skeleton: hydrostatic rest") {
+  for (const Real jitter : {0.0, 0.2})
+    for (const Real water_table : {-1.0, 0.0, 0.45}) {
+      check_rest<M1>(jitter, water_table, 20000);
+      check_rest<M2>(jitter, water_table, 1000);
+    }
+}
+
+// Richards' equation by finite volumes: 0.0788, 0.1602, 0.2637 m at 300, 900, 1800 s.
+TEST_CASE("rigid skeleton: infiltration into sand against Richards' equation, 300 s") {
+  const Real coarse = infiltrate(0.1, 1e6, {300}).front();
+  const Real fine = infiltrate(0.05, 1e6, {300}).front();
+  MESSAGE("first order in h: extrapolated ", 2 * fine - coarse, " m");
+  CHECK(verify::close(2 * fine - coarse, 0.0788, 0.02));
+  CHECK(verify::close(fine, 0.0788, 0.02));
+}
+
+TEST_SUITE("long") {
+  TEST_CASE("rigid skeleton: infiltration into sand against Richards' equation") {
+    const auto inflow = infiltrate(0.05, 1e6, {300, 900, 1800});
+    CHECK(verify::close(inflow[0], 0.0788, 0.02));
+    CHECK(verify::close(inflow[1], 0.1602, 0.02));
+    CHECK(verify::close(inflow[2], 0.2637, 0.02));
+    CHECK(verify::close(infiltrate(0.025, 1e6, {300}).front(), 0.0788, 0.02));
+  }
+}
