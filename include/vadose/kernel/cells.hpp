@@ -360,6 +360,8 @@ void gather_cell(State<M>& state, const CellView<M>& view) {
     const Real inside =
         min(max(cell.centroid[d], view.centre(d) - 0.35 * h), view.centre(d) + 0.35 * h);
     cell.quad_point[d] = flat ? plane[d] : inside;
+    cell.surface_point[d] =
+        flat ? view.centre(d) + (min(1.5, cell.fill) - 0.5) * h * normal[d] : inside;
   }
   // Drops: soil or water in a cell less than half full without a fuller neighbour of its kind is
   // free of pressure and mean stress until it joins others.

@@ -157,10 +157,15 @@ void for_inflows(const State<M>& state, const CellView<M>& view, F&& f) {
     }
 }
 
-/// Limits the outflow of every cell to the water it holds; on a sound scheme this does nothing.
+/// A cell gives at most this part of its water in a step.
+inline constexpr Real largest_outflow = 0.5;
+
+/// Limits the outflow of every cell to half the water it holds; on a sound scheme this does
+/// nothing, and what it holds back is counted.
 template <class M>
 void limit_donors(State<M>& state) {
   constexpr int dim = State<M>::dim;
+  state.nodes.limited.assign(static_cast<std::size_t>(state.grid.slots()), 0);
   for_cells(state.grid, state.options.threads,
             [&](std::int32_t e, const Index<dim>& local, int slot, int) {
               if (state.nodes.dof[static_cast<std::size_t>(e)] != e) return;
@@ -169,8 +174,11 @@ void limit_donors(State<M>& state) {
               Real out = 0;
               for_inflows(state, view, [&](const Inflow<dim>& f) { out += max(0.0, -f.flux); });
               out *= state.dt * state.water.density;
-              cell.limit = out > cell.water ? cell.water / out : 1;
+              const Real most = largest_outflow * cell.water;
+              cell.limit = out > most ? most / out : 1;
+              if (out > most) state.nodes.limited[static_cast<std::size_t>(slot)] += out - most;
             });
+  for (const Real held_back : state.nodes.limited) state.limited_water += held_back;
 }
 
 /// Water gained by every cell, its momentum, and the counts of held boundaries.

@@ -115,6 +115,7 @@ void surface_face(const State<M>& state, const CellView<M>& view, int axis,
                   const Cell<State<M>::dim>& soil, FaceFlux& face) {
   const Vec<State<M>::dim> centre = face_centre(view, axis);
   face.kind = FaceKind::surface;
+  face.held_pressure = 0;
   face.saturation = soil.saturation;
   face.conductivity = soil.conductivity;
   face.held = find_held(state, -1, 0, centre);
@@ -190,6 +191,58 @@ FaceFlux find_face(const State<M>& state, const CellView<M>& view, int axis) {
   return face;
 }
 
+/// Calls f(face) for every face of a pressure cell and its slivers.
+template <class M, class F>
+void for_faces(const CellView<M>& view, F&& f) {
+  constexpr int dim = State<M>::dim;
+  const auto& nodes = view.state.nodes;
+  const auto visit = [&](const Index<dim>& cell) {
+    const auto e = static_cast<std::size_t>(view.state.grid.entry(cell));
+    for (int d = 0; d < dim; ++d) {
+      Index<dim> above = cell;
+      ++above[d];
+      const auto ea = static_cast<std::size_t>(view.state.grid.entry(above));
+      f(nodes.face[e * dim + static_cast<std::size_t>(d)]);
+      f(nodes.face[ea * dim + static_cast<std::size_t>(d)]);
+    }
+  };
+  visit(view.cell);
+  for (int d = 0; d < dim; ++d)
+    for (int step = -1; step <= 1; step += 2) {
+      if (!view.has_neighbour(d, step)) continue;
+      if (nodes.dof[static_cast<std::size_t>(view.neighbour(d, step))] != view.entry()) continue;
+      Index<dim> cell = view.cell;
+      cell[d] += step;
+      visit(cell);
+    }
+}
+
+/// Pressure at the surface of every soil cell at air or at a held wall: the mean of what is held at
+/// its faces; a closed surface carries the pressure of the cell there, so that it drives no flow.
+template <class M>
+void find_reference_pressures(State<M>& state) {
+  constexpr int dim = State<M>::dim;
+  auto& nodes = state.nodes;
+  for_cells(state.grid, state.options.threads,
+            [&](std::int32_t e, const Index<dim>& local, int slot, int) {
+              auto& cell = nodes.cell[static_cast<std::size_t>(e)];
+              cell.has_reference = false;
+              if (nodes.dof[static_cast<std::size_t>(e)] != e || cell.kind != CellKind::soil)
+                return;
+              const CellView<M> view(state, local, slot);
+              const Real own =
+                  cell.pressure + hydrostatic(state, cell.centroid, cell.surface_point);
+              Real sum = 0, area = 0;
+              for_faces(view, [&](const FaceFlux& face) {
+                if (face.kind != FaceKind::surface) return;
+                sum += face.area * (face.held < 0 ? own : face.held_pressure);
+                area += face.area;
+              });
+              cell.has_reference = area > 0;
+              cell.reference_pressure = area > 0 ? sum / area : 0;
+            });
+}
+
 /// Step 4: all faces.
 template <class M>
 void find_faces(State<M>& state) {
@@ -202,6 +255,7 @@ void find_faces(State<M>& state) {
                 state.nodes.face[static_cast<std::size_t>(e) * dim + static_cast<std::size_t>(d)] =
                     find_face(state, view, d);
             });
+  find_reference_pressures(state);
 }
 
 }  // namespace vadose::kernel

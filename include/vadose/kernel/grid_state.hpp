@@ -70,17 +70,22 @@ struct Cell {
   Real quad_pressure = 0;           ///< pressure there [Pa]
   Real raw_fill = 0;                ///< filled fraction of the cell by itself
   Real fill = 0;                    ///< filled fraction, slivers included; 1 away from air
-  Real rate = 0;                    ///< div q of free water [1/s]
-  Real skeleton_rate = 0;           ///< div v^s [1/s]
-  Real mean_stress = 0;             ///< mean Bishop stress of the skeleton in the cell [Pa]
-  Real gain = 0;                    ///< water received in the step [kg]
-  Real limit = 1;                   ///< donor limiter on outflow
-  Real mean_velocity[Dim] = {};     ///< of the water, mass weighted [m/s]
-  Real momentum_gain[Dim] = {};     ///< velocity change by exchanged momentum [m/s]
+  Real surface_point[Dim] = {};     ///< on the plane that cuts a cell at air [m]
+  /// Liquid pressure at the surface of a cell at air: as held there, else that of the cell itself
+  /// (a closed surface carries it) [Pa].
+  Real reference_pressure = 0;
+  Real rate = 0;                 ///< div q of free water [1/s]
+  Real skeleton_rate = 0;        ///< div v^s [1/s]
+  Real mean_stress = 0;          ///< mean Bishop stress of the skeleton in the cell [Pa]
+  Real gain = 0;                 ///< water received in the step [kg]
+  Real limit = 1;                ///< donor limiter on outflow
+  Real mean_velocity[Dim] = {};  ///< of the water, mass weighted [m/s]
+  Real momentum_gain[Dim] = {};  ///< velocity change by exchanged momentum [m/s]
   CellKind kind = CellKind::none;
-  bool at_air = false;        ///< a face of the cell is open to air
-  bool drop = false;          ///< stands alone: no force, no volume change
-  std::uint8_t material = 0;  ///< of the largest bulk volume
+  bool at_air = false;         ///< a face of the cell is open to air
+  bool drop = false;           ///< stands alone: no force, no volume change
+  bool has_reference = false;  ///< reference_pressure applies
+  std::uint8_t material = 0;   ///< of the largest bulk volume
 };
 
 /// What a face between two cells is.
@@ -117,6 +122,7 @@ struct GridState {
   AlignedVector<Record> content;     ///< liquid momentum, content and storage of a cell
   AlignedVector<Record> materials;   ///< bulk volume of each material in a cell
   AlignedVector<Record> relative;    ///< n (v^l - v^s) and mean face H of a node
+  std::vector<Real> limited;         ///< water the donor limiter held back, per block [kg]
   std::vector<Real> ledger_in;       ///< inflow of a block through each HeldPressure [kg]
   std::vector<Cell<Dim>> cell;
   std::vector<char> retry;        ///< blocks whose pressures are not found yet, one per slot

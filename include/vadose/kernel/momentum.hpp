@@ -12,8 +12,13 @@ namespace vadose::kernel {
 /// What the cells around a node give it.
 template <int Dim>
 struct NodeSums {
-  Real volume = 0;                ///< V_c,I = sum f V_c N_I [m3]
-  Real force[Dim] = {};           ///< G_I = sum f V_c (p - p_held) grad N_I [N]
+  Real volume = 0;  ///< V_c,I = sum f V_c N_I [m3]
+  /// G_I = sum f V_c (p - p_ref) grad N_I [N]; p_ref is the pressure at the surface or held wall
+  /// that the node's cells end at, so that uniform pressure is at rest for any cut.
+  Real force[Dim] = {};
+  Real gradient[Dim] = {};  ///< sum f V_c grad N_I, zero inside [m2]
+  Real reference = 0;       ///< sum of reference pressures of the cells around [Pa]
+  int references = 0;
   Real soil_force[Dim] = {};      ///< sum f V_c S p grad N_I [N]
   Real skeleton_force[Dim] = {};  ///< - sum f V_c (mean Bishop stress) grad N_I [N]
   Real soil_volume = 0;           ///< share of V_c,I in soil cells, bulk of soil only [m3]
@@ -78,8 +83,13 @@ void add_cell([[maybe_unused]] const State<M>& state, const Cell<State<M>::dim>&
   node.volume += weight;
   for (int d = 0; d < dim; ++d) {
     node.force[d] += p * shape.gradient[d];
+    node.gradient[d] += c.quad_volume * shape.gradient[d];
     node.soil_force[d] += c.saturation * p * shape.gradient[d];
     node.skeleton_force[d] -= c.quad_volume * c.soil_share * c.mean_stress * shape.gradient[d];
+  }
+  if (c.has_reference) {
+    node.reference += c.reference_pressure;
+    ++node.references;
   }
   if (c.soil_share > 0) {
     node.has_soil = true;
@@ -93,21 +103,6 @@ void add_cell([[maybe_unused]] const State<M>& state, const Cell<State<M>::dim>&
       node.normal[d] -= c.quad_volume * shape.gradient[d];
     }
   }
-}
-
-/// Adds the pull of a held pressure at an open surface or wall: - p_held N_I n dA.
-template <class M>
-void add_held([[maybe_unused]] const State<M>& state, const FaceFlux& face,
-              const Cell<State<M>::dim>& soil, bool wall, bool on_soil_node, int axis,
-              NodeSums<State<M>::dim>& node) noexcept {
-  if (face.held_pressure == 0) return;
-  constexpr int dim = State<M>::dim;
-  const Real outward = face.soil_below ? 1 : -1;
-  const Real share = face.area / power<dim - 1>(2.0);
-  // A surface below the face plane divides its pull among the nodes of the cut cell.
-  const Real at_surface = wall ? 1 : min(1.5, soil.fill);
-  node.force[axis] -=
-      outward * share * face.held_pressure * (on_soil_node ? 1 - at_surface : at_surface);
 }
 
 /// Gathers cells and faces around a node (local index in its block).
@@ -149,22 +144,10 @@ NodeSums<State<M>::dim> gather_node(const State<M>& state, const CellView<M>& vi
       conductivity[d] += f.conductivity;
       gradient[d] += f.head_gradient;
     }
-    // Held pressures of surface faces of the cell, on both of its nodes along the axis.
-    for (int d = 0; d < dim; ++d) {
-      for (int side = 0; side < 2; ++side) {
-        const std::size_t fe =
-            side == 0 ? e
-                      : static_cast<std::size_t>(view.tile[at + BlockGrid<dim>::tile_stride(d)]);
-        const FaceFlux& f = nodes.face[fe * dim + static_cast<std::size_t>(d)];
-        if (f.kind != FaceKind::surface || f.held < 0 || f.held_pressure == 0) continue;
-        const bool own_cell_is_soil = f.soil_below == (side == 1);
-        if (!own_cell_is_soil || !inside || owner != view.tile[at]) continue;
-        const int position = cell[d] + side;
-        const bool wall = position == 0 || position == state.grid.cells()[d];
-        add_held(state, f, nodes.cell[e], wall, corner[d] != side, d, node);
-      }
-    }
   });
+  if (node.references > 0 && !water)
+    for (int d = 0; d < dim; ++d)
+      node.force[d] -= node.reference / node.references * node.gradient[d];
   for (int d = 0; d < dim; ++d) {
     if (faces[d] > 0) {
       node.saturation[d] = saturation[d] / faces[d];

@@ -137,12 +137,13 @@ struct State {
   Vec<dim> gravity = Vec<dim>::Zero();
   StepOptions options;
 
-  Real time = 0;          ///< [s]
-  Real dt = 0;            ///< step in work [s]
-  std::int64_t step = 0;  ///< steps taken
-  Real slack = 0;         ///< motion since the last sort [m]
-  bool frozen = false;    ///< liquid state held while the skeleton settles
-  bool has_free = false;  ///< free points exist
+  Real time = 0;           ///< [s]
+  Real dt = 0;             ///< step in work [s]
+  std::int64_t step = 0;   ///< steps taken
+  Real slack = 0;          ///< motion since the last sort [m]
+  bool frozen = false;     ///< liquid state held while the skeleton settles
+  Real limited_water = 0;  ///< held back by the donor limiter so far [kg]
+  bool has_free = false;   ///< free points exist
   Real loads_factor = 1;
 
   std::vector<SurfaceLoad<dim>> loads;

@@ -398,7 +398,10 @@ VADOSE_INLINE void free_batch(State<M>& state, std::size_t b,
             at_rest + keep * (pressure[l] - at_rest) - bulk_modulus * state.dt * cell.rate;
       if (cell.gain != 0 && cell.water > 0) {
         const Real dm = cell.gain * mass[l] / cell.water;
-        for (int d = 0; d < dim; ++d) points.at(field::velocity, b, d)[l] += cell.momentum_gain[d];
+        for (int d = 0; d < dim; ++d) {
+          double& v = points.at(field::velocity, b, d)[l];
+          v = (mass[l] * v + dm * cell.mean_velocity[d]) / (mass[l] + dm) + cell.momentum_gain[d];
+        }
         mass[l] += dm;
       }
     } else {
