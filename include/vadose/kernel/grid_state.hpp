@@ -123,6 +123,7 @@ struct GridState {
   AlignedVector<Record> materials;   ///< bulk volume of each material in a cell
   AlignedVector<Record> relative;    ///< n (v^l - v^s) and mean face H of a node
   std::vector<Real> limited;         ///< water the donor limiter held back, per block [kg]
+  std::vector<Real> open_impulse;    ///< pressure force that no phase took, Dim per block [N s]
   std::vector<Real> ledger_in;       ///< inflow of a block through each HeldPressure [kg]
   std::vector<Cell<Dim>> cell;
   std::vector<char> retry;        ///< blocks whose pressures are not found yet, one per slot

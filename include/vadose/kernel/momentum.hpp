@@ -180,10 +180,13 @@ Real nodal_porosity(const NodeSums<Dim>& sums, Real skeleton_volume) noexcept {
 }
 
 /// Forces of the liquid on both phases: f_l = phi G, f_s += R, R = sum f V S p grad N - phi G;
-/// at the fringe of the skeleton (occupancy o < 0.1) R is blended out.
+/// at the fringe of the skeleton (occupancy o < 0.1) R is blended out. phi weighs the liquid's part
+/// by its mass at the node, so that water at rest stays at rest for any arrangement of points; what
+/// no skeleton is there to take of R, and what the blend takes from it, is handed back in `open`:
+/// momentum closes with its sum.
 template <int Dim>
 void pressure_forces(const NodeSums<Dim>& sums, Real skeleton_volume, Real liquid_density,
-                     NodeMotion<Dim>& node) noexcept {
+                     NodeMotion<Dim>& node, Real (&open)[Dim]) noexcept {
   if (!(sums.volume > 0)) return;
   const Real phi = node.liquid_mass / (liquid_density * sums.volume);
   const Real occupancy = min(1.0, skeleton_volume / sums.volume);
@@ -193,7 +196,9 @@ void pressure_forces(const NodeSums<Dim>& sums, Real skeleton_volume, Real liqui
     node.liquid_force[d] += phi * sums.force[d];
     const Real full = sums.soil_force[d] - phi * sums.force[d];
     const Real fringe = occupancy * (sums.soil_force[d] - n * sums.saturation[d] * sums.force[d]);
-    node.solid_force[d] += w * full + (1 - w) * fringe;
+    const Real taken = w * full + (1 - w) * fringe;
+    node.solid_force[d] += taken;
+    open[d] = node.solid_mass > 0 ? full - taken : full;
   }
 }
 
@@ -435,7 +440,10 @@ void advance_node(State<M>& state, const CellView<M>& view) {
       skeleton_volume = sums.soil_volume;
     porosity = nodal_porosity(sums, skeleton_volume);
     for (int d = 0; d < dim; ++d) node.solid_force[d] += sums.skeleton_force[d];
-    pressure_forces(sums, skeleton_volume, state.water.density, node);
+    Real open[dim] = {};
+    pressure_forces(sums, skeleton_volume, state.water.density, node, open);
+    for (int d = 0; d < dim; ++d)
+      state.nodes.open_impulse[static_cast<std::size_t>(view.slot * dim + d)] += state.dt * open[d];
   }
   if (state.options.damping > 0 && node.solid_mass > 0) damp(state.options.damping, node);
   if constexpr (has_liquid<M> && has_skeleton<M>) {
@@ -454,10 +462,16 @@ void advance_node(State<M>& state, const CellView<M>& view) {
 /// All nodes.
 template <class M>
 void advance_nodes(State<M>& state) {
+  constexpr int dim = State<M>::dim;
+  if constexpr (has_liquid<M>)
+    state.nodes.open_impulse.assign(static_cast<std::size_t>(state.grid.slots() * dim), 0);
   for_cells(state.grid, state.options.threads,
             [&](std::int32_t, const Index<State<M>::dim>& local, int slot, int) {
               advance_node(state, CellView<M>(state, local, slot));
             });
+  if constexpr (has_liquid<M>)
+    for (std::size_t i = 0; i < state.nodes.open_impulse.size(); ++i)
+      state.open_impulse[static_cast<int>(i % dim)] += state.nodes.open_impulse[i];
 }
 
 }  // namespace vadose::kernel

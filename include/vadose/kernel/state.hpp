@@ -143,7 +143,10 @@ struct State {
   Real slack = 0;          ///< motion since the last sort [m]
   bool frozen = false;     ///< liquid state held while the skeleton settles
   Real limited_water = 0;  ///< held back by the donor limiter so far [kg]
-  bool has_free = false;   ///< free points exist
+  /// Impulse of pressure forces that no phase took so far [N s]: at nodes of free water, by packing
+  /// noise of its points; at the fringe of the skeleton. Momentum of a closed system closes with it.
+  Vec<dim> open_impulse = Vec<dim>::Zero();
+  bool has_free = false;  ///< free points exist
   Real loads_factor = 1;
 
   std::vector<SurfaceLoad<dim>> loads;
