@@ -66,11 +66,25 @@ require_packages() {
   have "$cxx" || fail "compiler $cxx not found"
 }
 
-# offer_pictures: a plotting program if there is none; never a reason to stop.
+# picture_python: prints a python3 that has matplotlib.
+picture_python() {
+  for python in python3 /usr/bin/python3; do
+    have "$python" && "$python" -c 'import matplotlib' >/dev/null 2>&1 || continue
+    echo "$python"
+    return 0
+  done
+  return 1
+}
+
+# offer_pictures: matplotlib if it is missing and can be had; never a reason to stop.
 offer_pictures() {
-  have gnuplot && return 0
-  have python3 && python3 -c 'import matplotlib' >/dev/null 2>&1 && return 0
-  apt_system && install_packages gnuplot-nox || say "no gnuplot and no matplotlib: no pictures"
+  picture_python >/dev/null && return 0
+  if apt_system && (install_packages python3-matplotlib) && picture_python >/dev/null; then return 0; fi
+  if have gnuplot; then
+    say "no matplotlib (package python3-matplotlib): gnuplot will draw the histories only"
+  else
+    say "no matplotlib (package python3-matplotlib) and no gnuplot: no pictures"
+  fi
 }
 
 # use_ninja <build folder>: Ninja where there is one; a configured folder keeps its generator.

@@ -65,7 +65,7 @@ def draw_field(states, value, label, limits, colours, path, spacing):
     """One panel per state, points coloured by value(points)."""
     width, height = 1.0, 0.34  # of what is shown [m]
     figure, axes = plt.subplots(2, 2, figsize=(12, 4.9), sharex=True, sharey=True)
-    figure.subplots_adjust(left=0.055, right=0.89, bottom=0.11, top=0.95, wspace=0.04, hspace=0.16)
+    figure.subplots_adjust(left=0.055, right=0.89, bottom=0.11, top=0.95, wspace=0.07, hspace=0.16)
     start = [(0, 0.3), (0.3, 0.3), (0.5, 0.1), (width, 0.1)]
     for axis, (time, points) in zip(axes.flat, states):
         axis.set_aspect("equal")
@@ -73,7 +73,7 @@ def draw_field(states, value, label, limits, colours, path, spacing):
         axis.set_ylim(0, height)
         figure.canvas.draw()
         scale = axis.transData.transform([(0, 0), (spacing, 0)])
-        size = 1.1 * (scale[1, 0] - scale[0, 0]) * 72 / figure.dpi
+        size = 1.2 * (scale[1, 0] - scale[0, 0]) * 72 / figure.dpi
         x, y = points["Points"][:, 0], points["Points"][:, 1]
         drawn = axis.scatter(x, y, c=value(points), s=size**2, marker="s", linewidths=0,
                              cmap=colours, vmin=limits[0], vmax=limits[1])
