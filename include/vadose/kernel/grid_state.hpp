@@ -51,7 +51,7 @@ enum class CellKind : std::uint8_t {
 template <int Dim>
 struct Cell {
   Real pressure = 0;       ///< p_c at the centroid [Pa]
-  Real saturation = 0;     ///< S_c = M_c / (rho_l sum n V), at most 1
+  Real saturation = 0;     ///< S_c = M_c / (rho_l(p) sum n V), at most 1
   Real porosity = 1;       ///< pore-weighted mean n
   Real pore_volume = 0;    ///< sum n V [m3]
   Real soil_share = 0;     ///< bulk volume of soil / water-bearing volume [-]
@@ -62,6 +62,7 @@ struct Cell {
   Real conductivity = 0;   ///< k(S_c, n) [m/s]
   Real saturated_conductivity = 0;  ///< k(1, n) [m/s]
   Real water = 0;                   ///< M_c [kg]
+  Real content = 0;                 ///< water volume at reference density, M / rho_l0 [m3]
   Real storage = 0;                 ///< sum V d(theta)/dp [m3/Pa]
   Real low = 0, high = 0;           ///< bracket of the pressure while it is sought [Pa]
   Real centroid[Dim] = {};          ///< of the water-bearing volume [m]

@@ -356,7 +356,13 @@ void apply_boundaries(const State<M>& state, const NodeSums<State<M>::dim>& sums
                       const NodeMotion<State<M>::dim>& before, NodeMotion<State<M>::dim>& node) {
   constexpr int dim = State<M>::dim;
   const bool both = node.liquid_mass > 0 && (is_rigid<M> || node.solid_mass > 0);
-  if (sums.closed_surface && both) tie_normal(sums.normal, is_rigid<M>, node);
+  if (sums.closed_surface && both) {
+    // Along a wall only what lies in the wall counts: the other half of the soil is missing there.
+    Real normal[dim];
+    for (int d = 0; d < dim; ++d)
+      normal[d] = flags & (node_flag::liquid_fixed << d) ? 0 : sums.normal[d];
+    tie_normal(normal, is_rigid<M>, node);
+  }
   for (int d = 0; d < dim; ++d) {
     if (flags & (node_flag::solid_fixed << d)) node.solid[d] = 0;
     if (flags & (node_flag::liquid_fixed << d)) node.liquid[d] = 0;

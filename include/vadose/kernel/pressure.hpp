@@ -37,10 +37,10 @@ void solve_saturated(State<M>& state) {
     if (cell.kind != CellKind::soil) return;
     const Real bulk_modulus = state.water.bulk_modulus;
     cell.saturation = 1;
-    cell.storage = cell.pore_volume / bulk_modulus;
     if (!state.frozen)
       cell.pressure =
           bulk_modulus * std::log(cell.water / (state.water.density * cell.pore_volume));
+    cell.storage = cell.pore_volume / bulk_modulus * std::exp(cell.pressure / bulk_modulus);
   });
 }
 
@@ -180,7 +180,7 @@ void solve_unsaturated(State<M>& state) {
     const Real compressed = filling > 1 ? state.water.bulk_modulus * std::log(filling) : 0;
     cell.high = compressed + span;
     cell.low = state.soils[cell.material].pressure_floor - span;
-    cell.pressure = min(max(cell.pressure, cell.low), cell.high);
+    if (!state.frozen) cell.pressure = min(max(cell.pressure, cell.low), cell.high);
   });
   for (int pass = 0; pass < max_passes; ++pass) {
     clear_content(state);
@@ -196,10 +196,11 @@ void solve_unsaturated(State<M>& state) {
                 const Record sums = member_sums(CellView<M>(state, local, slot), nodes.content);
                 const Real target = cell.water / state.water.density;
                 const Real floor = state.soils[cell.material].pressure_floor;
-                const bool found = state.frozen
-                                       ? (cell.storage = sums[lane::storage], true)
-                                       : improve_pressure(cell, sums[lane::content],
-                                                          sums[lane::storage], target, floor);
+                if (state.frozen) cell.storage = sums[lane::storage];
+                cell.content = state.frozen ? sums[lane::content] : target;
+                const bool found =
+                    state.frozen ||
+                    improve_pressure(cell, sums[lane::content], sums[lane::storage], target, floor);
                 if (found)
                   cell.low = 1, cell.high = 0;  // found: not touched again
                 else
@@ -211,8 +212,9 @@ void solve_unsaturated(State<M>& state) {
     widen_retry(state);
   }
   for_pressure_cells(state, [&](Cell<dim>& cell, std::int32_t, int) {
-    if (cell.kind == CellKind::soil)
-      cell.saturation = min(1.0, cell.water / (state.water.density * cell.pore_volume));
+    if (cell.kind != CellKind::soil) return;
+    const Real compression = std::exp(cell.pressure / state.water.bulk_modulus);
+    cell.saturation = min(1.0, cell.content / (cell.pore_volume * compression));
   });
 }
 

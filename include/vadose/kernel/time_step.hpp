@@ -78,8 +78,9 @@ StableStep wet_step(const State<M>& state) {
     } else if constexpr (has_skeleton<M>) {
       if (!(c.saturation > 0)) continue;
       const auto& soil = state.soils[c.material];
-      // theta' = n (S/K + S_p) exp(p/K): K* = S / (theta'/n).
-      const Real modulus = c.saturation * c.pore_volume / max(c.storage, 1e-30);
+      // theta' = n (S/K + S_p) exp(p/K): K* = S / (S/K + S_p) = S n exp(p/K) / theta'.
+      const Real modulus = c.saturation * std::exp(c.pressure / state.water.bulk_modulus) *
+                           c.pore_volume / max(c.storage, 1e-30);
       const Real w2 = is_rigid<M>
                           ? seepage_frequency2(modulus, rho, h)
                           : two_phase_frequency2(soil.p_wave_modulus, modulus, c.porosity,
