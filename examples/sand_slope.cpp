@@ -48,6 +48,7 @@ struct Choices {
   Real end_time = 1.5;        // after the start of the rain [s]
   Real courant = 0.5;         // [-]
   Real damping = 0.05;        // local, of the skeleton [-]
+  Real pic_rate = 20;         // relaxation of point velocities to the grid's [1/s]
   Real points_per_cell = 4;   // of each phase
   Real threads = std::min(2, vd::available_threads());
   Real frames = 30;  // VTK files after the first
@@ -65,6 +66,7 @@ constexpr const char* usage =
     "  --cone C             outer, inner, plane-strain or inscribed (outer)\n"
     "  --courant C          part of the stable step (0.5)\n"
     "  --damping A          local damping of the skeleton, in [0, 1) (0.05)\n"
+    "  --pic-rate R         relaxation of point velocities to the grid's in 1/s (20)\n"
     "  --frozen-porosity    S(s) and k(S) at the initial porosity\n"
     "  --paper              cells of 0.01 m, 2.2e9 Pa, 100 s: days\n"
     "  --frames N           states written as VTK files (30)\n"
@@ -109,6 +111,7 @@ Choices read(int count, char** words) {
                  {"--end-time", &c.end_time},
                  {"--courant", &c.courant},
                  {"--damping", &c.damping},
+                 {"--pic-rate", &c.pic_rate},
                  {"--frames", &c.frames},
                  {"--threads", &c.threads}};
   for (int i = 1; i < count; ++i) {
@@ -175,9 +178,11 @@ vd::Solver<SandSlope> start(const Choices& c) {
   scene.add(vd::bc::Fixed{.face = vd::Face::bottom});
   scene.add(vd::bc::Roller{.face = vd::Face::left});
   scene.add(vd::bc::Roller{.face = vd::Face::right});
-  return vd::Solver<SandSlope>{
-      scene,
-      {.courant = c.courant, .damping = c.damping, .threads = whole("--threads", c.threads, 1024)}};
+  return vd::Solver<SandSlope>{scene,
+                               {.courant = c.courant,
+                                .damping = c.damping,
+                                .transfer = {.pic_rate = c.pic_rate},
+                                .threads = whole("--threads", c.threads, 1024)}};
 }
 
 // What is measured, besides whole states and balances. Within a cell the pressure is read as that
@@ -248,10 +253,11 @@ void write_choices(const Choices& c) {
                         {"end_time", "s"},
                         {"courant", "-"},
                         {"damping", "-"},
+                        {"pic_rate", "1/s"},
                         {"cone", "-"},
                         {"frozen_porosity", "-"}}};
   file.add({c.cell_size, c.points_per_cell, c.bulk_modulus, c.end_time, c.courant, c.damping,
-            static_cast<Real>(c.cone), static_cast<Real>(c.frozen_porosity)});
+            c.pic_rate, static_cast<Real>(c.cone), static_cast<Real>(c.frozen_porosity)});
 }
 
 void run(const Choices& c) {

@@ -157,6 +157,15 @@ struct CellView {
   std::int32_t neighbour(int axis, int step) const noexcept {
     return tile[at + step * BlockGrid<dim>::tile_stride(axis)];
   }
+  /// Entry of the cell a step (-1, 0, 1 along each axis) away; -1 outside the box.
+  std::int32_t at_step(const Index<dim>& step) const noexcept {
+    int to = at;
+    for (int d = 0; d < dim; ++d) {
+      if (step[d] != 0 && !has_neighbour(d, step[d])) return -1;
+      to += step[d] * BlockGrid<dim>::tile_stride(d);
+    }
+    return tile[to] == state.grid.outside() ? -1 : tile[to];
+  }
   /// Centre of the cell along an axis [m].
   Real centre(int axis) const noexcept {
     return state.grid.origin()[axis] + (cell[axis] + 0.5) * state.grid.cell_size();
@@ -196,17 +205,25 @@ void classify_cells(State<M>& state) {
             });
 }
 
-/// The neighbour a sliver (a surface cell less than half full) shares its pressure with: the face
-/// neighbour of the same kind, at least half full, in whose direction the fill grows most; -1 if
-/// the cell is no sliver or has none.
+/// Below this fill a surface cell is a sliver: half, less a margin so that a lattice of points that
+/// fills just half a cell does not change sides by round-off.
+inline constexpr Real sliver_fill = 0.47;
+
+/// The neighbour a sliver shares its pressure with: the face neighbour of the same kind that is no
+/// sliver and in whose direction the fill grows most; at corners, where no face neighbour is full
+/// enough, the fullest diagonal one; -1 if the cell is no sliver or stands alone.
 template <class M>
 std::int32_t sliver_target(const CellView<M>& view) noexcept {
+  constexpr int dim = State<M>::dim;
   const auto& cells = view.state.nodes.cell;
   const auto& own = cells[static_cast<std::size_t>(view.entry())];
-  if (own.raw_fill >= 0.5) return -1;
+  if (own.raw_fill >= sliver_fill) return -1;
+  const auto fits = [&](const auto& other) {
+    return other.kind == own.kind && other.raw_fill >= sliver_fill;
+  };
   std::int32_t target = -1;
   Real best = 0;
-  for (int d = 0; d < State<M>::dim; ++d) {
+  for (int d = 0; d < dim; ++d) {
     Real fill[2] = {0, 0};
     for (int side = 0; side < 2; ++side)
       if (view.has_neighbour(d, 2 * side - 1))
@@ -215,16 +232,25 @@ std::int32_t sliver_target(const CellView<M>& view) noexcept {
     for (int side = 0; side < 2; ++side) {
       if (!view.has_neighbour(d, 2 * side - 1)) continue;
       const std::int32_t n = view.neighbour(d, 2 * side - 1);
-      const auto& other = cells[static_cast<std::size_t>(n)];
-      if (other.kind != own.kind || other.raw_fill < 0.5) continue;
+      if (!fits(cells[static_cast<std::size_t>(n)])) continue;
       // Ties go to the last axis: vertical.
-      const Real growth = fill[side] - fill[1 - side] + 1e-9 * (d + 1);
+      const Real growth = fill[side] - fill[1 - side] + 1e-6 * (d + 1);
       if (growth > best) {
         best = growth;
         target = n;
       }
     }
   }
+  if (target >= 0) return target;
+  for_cube<dim>(-1, 2, [&](const Index<dim>& step) {
+    const std::int32_t n = view.at_step(step);
+    if (n < 0 || n == view.entry()) return;
+    const auto& other = cells[static_cast<std::size_t>(n)];
+    if (fits(other) && min(1.0, other.raw_fill) > best) {
+      best = min(1.0, other.raw_fill);
+      target = n;
+    }
+  });
   return target;
 }
 
@@ -241,18 +267,24 @@ void assign_pressure_cells(State<M>& state) {
             });
 }
 
-/// Calls f(entry) for a cell itself and every sliver that shares its pressure.
+/// Calls f(entry, step) for a cell itself and every sliver around that shares its pressure.
+template <class M, class F>
+void scan_members(const CellView<M>& view, F&& f) {
+  constexpr int dim = State<M>::dim;
+  const std::int32_t own = view.entry();
+  for_cube<dim>(-1, 2, [&](const Index<dim>& step) {
+    const std::int32_t n = view.at_step(step);
+    if (n >= 0 && view.state.nodes.dof[static_cast<std::size_t>(n)] == own) f(n, step);
+  });
+}
+
+/// The same once cells are gathered; away from the surface a cell is its only member.
 template <class M, class F>
 void for_members(const CellView<M>& view, F&& f) {
-  const std::int32_t e = view.entry();
-  f(e);
-  for (int d = 0; d < State<M>::dim; ++d)
-    for (int step = -1; step <= 1; step += 2) {
-      if (!view.has_neighbour(d, step)) continue;
-      const std::int32_t n = view.neighbour(d, step);
-      if (n != view.state.grid.outside() && view.state.nodes.dof[static_cast<std::size_t>(n)] == e)
-        f(n);
-    }
+  if (view.state.nodes.cell[static_cast<std::size_t>(view.entry())].members > 1)
+    scan_members(view, f);
+  else
+    f(view.entry(), Index<State<M>::dim>{});
 }
 
 /// Material with the largest bulk volume in a record of materials.
@@ -288,6 +320,31 @@ bool air_normal(const CellView<M>& view, Real (&normal)[State<M>::dim]) noexcept
   return true;
 }
 
+/// Where the pressure of a cell at air acts, and where its surface is. A plane surface that cuts off
+/// 1 - f of the cell moves the centroid of what is left by half of that from the middle: exact along
+/// the axes, within 0.07 h in between, and free of the scatter of the points. With slivers, or where
+/// the points say something quite different (ragged soil), their centroid counts.
+template <class M>
+void place_quadrature(const CellView<M>& view, int members, Cell<State<M>::dim>& cell) {
+  constexpr int dim = State<M>::dim;
+  const Real h = view.state.grid.cell_size();
+  const Real fill = min(1.0, cell.fill);
+  Real normal[dim], plane[dim];
+  bool flat = air_normal(view, normal) && members == 1;
+  for (int d = 0; d < dim; ++d) {
+    plane[d] = view.centre(d) - 0.5 * (1 - fill) * h * normal[d];
+    flat = flat && std::fabs(plane[d] - cell.centroid[d]) < 0.25 * h;
+  }
+  // Near a cell boundary the nodes on the far side would have next to no volume.
+  const Real reach = members > 1 ? 0.5 * h : 0.35 * h;
+  for (int d = 0; d < dim; ++d) {
+    const Real centre = view.centre(d);
+    const Real inside = min(max(cell.centroid[d], centre - reach), centre + reach);
+    cell.quad_point[d] = flat ? plane[d] : inside;
+    cell.surface_point[d] = cell.quad_point[d] + 0.5 * min(1.5, cell.fill) * h * normal[d];
+  }
+}
+
 /// Sums, centroid and quadrature of the pressure unknown of one cell. A full cell is integrated at
 /// its centre; a cell at a free surface at the centroid of what fills it, so that a column at rest
 /// is in exact balance for any position of its surface.
@@ -301,7 +358,7 @@ void gather_cell(State<M>& state, const CellView<M>& view) {
   Real fill = 0, wet = 0;
   bool at_air = false;
   int members = 0;
-  for_members(view, [&](std::int32_t m) {
+  scan_members(view, [&](std::int32_t m, const Index<dim>&) {
     const auto i = static_cast<std::size_t>(m);
     (Lanes::load(pore.value) + Lanes::load(nodes.pore[i].value)).store(pore.value);
     (Lanes::load(free.value) + Lanes::load(nodes.free[i].value)).store(free.value);
@@ -321,6 +378,7 @@ void gather_cell(State<M>& state, const CellView<M>& view) {
           at_air = true;
       }
   cell.at_air = at_air;
+  cell.members = static_cast<std::uint8_t>(members);
   cell.material = state.soils.size() > 1 ? largest(materials, static_cast<int>(state.soils.size()))
                                          : std::uint8_t{0};
   cell.pore_volume = soil ? pore[lane::pore_volume] : 0;
@@ -344,29 +402,11 @@ void gather_cell(State<M>& state, const CellView<M>& view) {
   cell.quad_volume = full ? view.volume() : wet;
   for (int d = 0; d < dim; ++d) cell.quad_point[d] = view.centre(d);
   if (full) return;
-  // A plane surface that cuts off 1 - f of the cell moves the centroid of what is left by half of
-  // that from the middle: exact along the axes, within 0.07 h in between, and free of the scatter
-  // of the points. Where the points say something quite different (drops, ragged soil) they count.
-  Real normal[dim], plane[dim];
-  const Real h = state.grid.cell_size();
-  const Real shift = 0.5 * (min(members > 1 ? 1.5 : 1.0, cell.fill) - 1) * h;
-  bool flat = air_normal(view, normal);
-  for (int d = 0; d < dim; ++d) {
-    plane[d] = view.centre(d) + shift * normal[d];
-    flat = flat && std::fabs(plane[d] - cell.centroid[d]) < 0.25 * h;
-  }
-  for (int d = 0; d < dim; ++d) {
-    // Near a cell boundary the nodes on the far side would have next to no volume.
-    const Real inside =
-        min(max(cell.centroid[d], view.centre(d) - 0.35 * h), view.centre(d) + 0.35 * h);
-    cell.quad_point[d] = flat ? plane[d] : inside;
-    cell.surface_point[d] =
-        flat ? view.centre(d) + (min(1.5, cell.fill) - 0.5) * h * normal[d] : inside;
-  }
-  // Drops: soil or water in a cell less than half full without a fuller neighbour of its kind is
-  // free of pressure and mean stress until it joins others.
-  cell.drop = members == 1 && cell.raw_fill < 0.5;
+  // Drops: soil or water in a sliver that stands alone is free of pressure and mean stress until it
+  // joins others.
+  cell.drop = members == 1 && cell.raw_fill < sliver_fill;
   if (cell.drop) cell.quad_volume = 0;
+  place_quadrature(view, members, cell);
 }
 
 /// Gathers every cell that owns its pressure.

@@ -145,16 +145,11 @@ void for_inflows(const State<M>& state, const CellView<M>& view, F&& f) {
       if (high.flux != 0) f(Inflow<dim>{-high.flux, other(ea), &high});
     }
   };
-  visit(view.cell);
-  const std::int32_t own = view.entry();
-  for (int d = 0; d < dim; ++d)
-    for (int step = -1; step <= 1; step += 2) {
-      if (!view.has_neighbour(d, step)) continue;
-      if (nodes.dof[static_cast<std::size_t>(view.neighbour(d, step))] != own) continue;
-      Index<dim> cell = view.cell;
-      cell[d] += step;
-      visit(cell);
-    }
+  for_members(view, [&](std::int32_t, const Index<dim>& step) {
+    Index<dim> cell = view.cell;
+    for (int d = 0; d < dim; ++d) cell[d] += step[d];
+    visit(cell);
+  });
 }
 
 /// A cell gives at most this part of its water in a step.

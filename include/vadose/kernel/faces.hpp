@@ -172,6 +172,7 @@ FaceFlux find_face(const State<M>& state, const CellView<M>& view, int axis) {
   if (own == low) return face;
   const Cell<State<M>::dim>* above = own < 0 ? nullptr : &nodes.cell[static_cast<std::size_t>(own)];
   const Cell<State<M>::dim>* below = low < 0 ? nullptr : &nodes.cell[static_cast<std::size_t>(low)];
+  if ((above && above->drop) || (below && below->drop)) return face;
   const bool soil_above = above && above->kind == CellKind::soil;
   const bool soil_below = below && below->kind == CellKind::soil;
   if (!soil_above && !soil_below) return face;
@@ -206,15 +207,11 @@ void for_faces(const CellView<M>& view, F&& f) {
       f(nodes.face[ea * dim + static_cast<std::size_t>(d)]);
     }
   };
-  visit(view.cell);
-  for (int d = 0; d < dim; ++d)
-    for (int step = -1; step <= 1; step += 2) {
-      if (!view.has_neighbour(d, step)) continue;
-      if (nodes.dof[static_cast<std::size_t>(view.neighbour(d, step))] != view.entry()) continue;
-      Index<dim> cell = view.cell;
-      cell[d] += step;
-      visit(cell);
-    }
+  for_members(view, [&](std::int32_t, const Index<dim>& step) {
+    Index<dim> cell = view.cell;
+    for (int d = 0; d < dim; ++d) cell[d] += step[d];
+    visit(cell);
+  });
 }
 
 /// Pressure at the surface of every soil cell at air or at a held wall: the mean of what is held at

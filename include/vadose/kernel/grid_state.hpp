@@ -87,6 +87,7 @@ struct Cell {
   bool drop = false;           ///< stands alone: no force, no volume change
   bool has_reference = false;  ///< reference_pressure applies
   std::uint8_t material = 0;   ///< of the largest bulk volume
+  std::uint8_t members = 1;    ///< itself and the slivers that share its pressure
 };
 
 /// What a face between two cells is.

@@ -160,18 +160,20 @@ VADOSE_INLINE void into_pressure_cell(const State<M>& state, const CellFinder<St
     const std::int32_t e = entries[cells.index[l]];
     const std::int32_t owner = state.nodes.dof[static_cast<std::size_t>(e)];
     if (owner < 0 || owner == e) continue;
-    int at = cells.index[l];
     const Index<dim> first = state.grid.first_cell(slot);
-    for (int d = 0; d < dim; ++d) {
-      const int stride = BlockGrid<dim>::tile_stride(d);
-      const int position = (at / stride) % Block<dim>::tile_edge;
-      const Real low = state.grid.origin()[d] + (first[d] + position - 1) * h;
-      // Slivers are cells of the tile's inside, so their face neighbours are in the tile too,
-      // except at its rim; there the entry is compared directly.
-      if (position > 0 && entries[at - stride] == owner) x[d].set(l, min(x[d][l], low));
-      if (position + 1 < Block<dim>::tile_edge && entries[at + stride] == owner)
-        x[d].set(l, max(x[d][l], low + h));
-    }
+    Index<dim> cell;  // of the point, in the grid
+    for (int d = 0; d < dim; ++d)
+      cell[d] =
+          first[d] - 1 + (cells.index[l] / BlockGrid<dim>::tile_stride(d)) % Block<dim>::tile_edge;
+    for_cube<dim>(-1, 2, [&](const Index<dim>& step) {
+      Index<dim> target = cell;
+      for (int d = 0; d < dim; ++d) target[d] += step[d];
+      if (state.grid.entry(target) != owner) return;
+      for (int d = 0; d < dim; ++d) {
+        const Real low = state.grid.origin()[d] + target[d] * h;
+        x[d].set(l, min(max(x[d][l], low), low + h));
+      }
+    });
   }
 }
 

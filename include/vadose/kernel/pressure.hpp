@@ -143,7 +143,7 @@ void clear_content(State<M>& state) {
 template <class M>
 Record member_sums(const CellView<M>& view, const AlignedVector<Record>& records) {
   Record total;
-  for_members(view, [&](std::int32_t m) {
+  for_members(view, [&](std::int32_t m, const auto&) {
     (Lanes::load(total.value) + Lanes::load(records[static_cast<std::size_t>(m)].value))
         .store(total.value);
   });
