@@ -62,6 +62,11 @@ struct StableStep {
   }
 };
 
+/// Part of 2/omega that a cell cut by the ground surface allows: its nodes carry less mass than the
+/// formula assumes. Measured: 200 steps from noise on a saturated block at K = 2.2 GPa in 80
+/// positions on the grid do not grow at half of this.
+inline constexpr Real cut_cell_step = 0.55;
+
 /// Largest step of the water and the soil it fills, 2/omega, over all cells.
 template <class M>
 StableStep wet_step(const State<M>& state) {
@@ -85,7 +90,8 @@ StableStep wet_step(const State<M>& state) {
                           ? seepage_frequency2(modulus, rho, h)
                           : two_phase_frequency2(soil.p_wave_modulus, modulus, c.porosity,
                                                  c.saturation, soil.material.solid_density, rho, h);
-      step.take(2 / std::sqrt(w2), StepLimit::two_phase);
+      const bool cut = c.at_air && (c.members > 1 || c.raw_fill < 0.95);
+      step.take((cut ? cut_cell_step : 1) * 2 / std::sqrt(w2), StepLimit::two_phase);
     }
   }
   return step;
