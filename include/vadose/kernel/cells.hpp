@@ -336,7 +336,7 @@ void place_quadrature(const CellView<M>& view, int members, Cell<State<M>::dim>&
     flat = flat && std::fabs(plane[d] - cell.centroid[d]) < 0.25 * h;
   }
   // Near a cell boundary the nodes on the far side would have next to no volume.
-  const Real reach = members > 1 ? 0.5 * h : 0.35 * h;
+  const Real reach = 0.35 * h;
   for (int d = 0; d < dim; ++d) {
     const Real centre = view.centre(d);
     const Real inside = min(max(cell.centroid[d], centre - reach), centre + reach);
