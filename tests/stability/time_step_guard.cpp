@@ -61,9 +61,9 @@ bool all_finite(const Points& points) {
 
 /// Kicks a column and runs it at 1.2 times 2/omega.
 template <class M>
-void check_guard(const char* name) {
+void check_guard(const char* name, Real courant = 1.2) {
   constexpr int dim = M::Kinematics::dim;
-  vd::Solver<M> solver(column<M>(), {.courant = 1.2});
+  vd::Solver<M> solver(column<M>(), {.courant = courant});
   auto& solid = solver.mutable_state().solid;
   solid.for_each([&](std::size_t b, int l) {
     for (int d = 0; d < dim; ++d)
@@ -93,7 +93,9 @@ TEST_CASE("guard: 1.2 times the limit stops within 1000 steps, saturated") {
   check_guard<Wet>("saturated");
 }
 TEST_CASE("guard: 1.2 times the limit stops within 1000 steps, saturated 2D") {
-  check_guard<WetPlane>("saturated 2D");
+  // The growing motion cuts cells at the surface, whose step is smaller by cut_cell_step: without the
+  // factor the run would save itself.
+  check_guard<WetPlane>("saturated 2D", 1.2 / vd::kernel::cut_cell_step);
 }
 
 TEST_CASE("guard: advance_to throws with the report of the failed step") {

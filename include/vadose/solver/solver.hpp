@@ -18,7 +18,7 @@ namespace vadose {
 /// Choices of a run; every one has a default.
 template <class M>
 struct SolverOptions {
-  Real courant = 0.5;           ///< part of the stable step that is taken [-], in (0, 2]
+  Real courant = 0.5;           ///< part of the stable step that is taken [-], in (0, 4)
   Real damping = 0;             ///< local damping of the skeleton [-], in [0, 1)
   Real displacement_cap = 0.1;  ///< largest motion in a step [cell size], in (0, 0.25]
   Real dt_max = 1e30;           ///< largest step [s], > 0
@@ -28,7 +28,7 @@ struct SolverOptions {
 
   void validate() const {
     check::in_context("solver options", [&] {
-      check::inside("courant", courant, 0, 2, "-");
+      check::inside("courant", courant, 0, 4, "-");
       if (!(damping >= 0 && damping < 1)) check::fail("damping", damping, "[0, 1)", "-");
       if (!(displacement_cap > 0 && displacement_cap <= 0.25))
         check::fail("displacement_cap", displacement_cap, "(0, 0.25]", "cell size");
