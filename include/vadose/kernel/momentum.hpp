@@ -64,6 +64,7 @@ void quad_coordinates(const State<M>& state, const Index<State<M>::dim>& cell,
 }
 
 /// Adds one cell's share to a node. corner: which corner of the cell the node is.
+/// DEVIATION: [Zhan] Eq. (22) takes the whole stress of each point to the nodes.
 /// The skeleton's mean stress acts here like the liquid's pressure, with the same quadrature: a
 /// free surface under suction (sigma* = S p) is then in balance node by node, and a stiff liquid
 /// does not lock the skeleton; the deviator acts through the points' own functions.
@@ -179,6 +180,9 @@ Real nodal_porosity(const NodeSums<Dim>& sums, Real skeleton_volume) noexcept {
   return 1 - (1 - n) * min(1.0, skeleton_volume / sums.volume);
 }
 
+/// DEVIATION: [Zhan] Eq. (20) prints the point force n p V grad N, without S, which pushes (1 - n) p at
+/// a pond: still water over soil does not stay still. Here the nodal liquid fraction weighs the
+/// gradient of the cell pressures.
 /// Forces of the liquid on both phases: f_l = phi G, f_s += R, R = sum f V S p grad N - phi G;
 /// at the fringe of the skeleton (occupancy o < 0.1) R is blended out. phi weighs the liquid's part
 /// by its mass at the node, so that water at rest stays at rest for any arrangement of points; what
@@ -213,6 +217,7 @@ void damp(Real damping, NodeMotion<Dim>& node) noexcept {
   }
 }
 
+/// DEVIATION: the drag is explicit in [Zhan], which needs steps of 1.5e-7 s for 4.1 unsaturated.
 /// New velocities of both phases along one axis with implicit drag q = dt D:
 /// [a + q, -q; -q, b + q] (v_l, v_s) = (r_l, r_s). Momentum conserving, stable for any q.
 inline void solve_pair(Real a, Real b, Real q, Real r_l, Real r_s, Real& v_l, Real& v_s) noexcept {
@@ -267,6 +272,7 @@ void apply_special(const State<M>& state, std::int32_t entry,
   }
 }
 
+/// DEVIATION: [Zhan] Eq. (20) prints n m g / k without S; Eq. (2) has it, and so has this.
 /// Drag per velocity of a node along each axis, D_I = n S V_s coefficient, for a law linear in the
 /// relative velocity; a quadratic part is linearised at the closed-form root (see below).
 template <class M>

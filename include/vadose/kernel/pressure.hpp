@@ -4,6 +4,9 @@
 /// \file
 /// Step 2: cell pressures from the water in the cells. One ledger: the mass on the points is the
 /// state, the pressure follows from it through S = 1 and through dry soil without a switch.
+/// DEVIATION: [Zhan] integrates p on the liquid points by Eq. (9), which as printed is an Eulerian
+/// rate with a misprint in its last term and without n S_n Dn; here the dependence of S on n enters
+/// exactly, by the mass of each point.
 
 #include <vadose/kernel/cells.hpp>
 

@@ -193,6 +193,8 @@ void report_trouble(State<M>& state, const Points& points, std::size_t b, const 
   }
 }
 
+/// DEVIATION: [Zhan] Eq. (25) prints v_k; the new velocity is taken, since forward Euler is unstable
+/// for undamped waves.
 /// Moves a batch by dt v and checks it: finite, |v| dt below a cell, inside the box.
 template <class M, class Points>
 VADOSE_INLINE void move(State<M>& state, Points& points, std::size_t b, const char* phase,
@@ -226,6 +228,7 @@ VADOSE_INLINE void move(State<M>& state, Points& points, std::size_t b, const ch
 inline constexpr Real dispersed_porosity = 0.7;
 
 /// One batch of solid points.
+/// DEVIATION: [Zhan] Eq. (26) prints J inverted; J = (1 - n0) / (1 - n) here, as in Eq. (27).
 template <class M>
 VADOSE_INLINE void update_solid_batch(State<M>& state, std::size_t b,
                                       const TileFrame<State<M>::dim>& frame,

@@ -48,7 +48,9 @@ void set_common(PointValues<Fields>& p, const SeedPoint<M::Kinematics::dim>& see
 }
 
 /// Solid and pore-water points of one body of soil. Each water point starts where a solid point
-/// is and stays there; soil that starts dry has water points without mass.
+/// is and stays there.
+/// DEVIATION: [Zhan] has no liquid points in dry soil; here they are there without mass, so that none
+/// need be created at a wetting front.
 template <class M>
 void seed_soil(State<M>& state, const Scene<M>& scene, const InitialState<M>& initial, int index,
                std::int64_t& next_solid, std::int64_t& next_liquid) {
