@@ -316,8 +316,8 @@ void update_solid(State<M>& state) {
   });
 }
 
-/// Share of its cell's gain that each pore-water point takes: outflow in proportion to its mass,
-/// inflow in proportion to the room it has (unsaturated) or to its pores. Exchanged water carries
+/// Share of its cell's gain that each pore-water point takes: in saturated cells so that all are
+/// equally full; else outflow in proportion to its mass, inflow to the room it has. Exchanged water carries
 /// its momentum. Writes mass, velocity and pressure.
 template <class M>
 VADOSE_INLINE void exchange_batch(State<M>& state, std::size_t b,
@@ -338,13 +338,16 @@ VADOSE_INLINE void exchange_batch(State<M>& state, std::size_t b,
     if (cell.kind == CellKind::soil && volume[l] > 0) {
       const Real pores = volume[l] * porosity[l];
       Real dm;
-      if (cell.gain < 0) {
+      const Real room = state.water.density * cell.pore_volume - cell.water;
+      if (cell.pressure >= 0) {
+        // Full pores: every point of the cell is as full as the others, or a point that crosses to
+        // another cell would bring its own pressure along (1 % of filling is 1 % of K).
+        dm = (cell.water + cell.gain) * pores / cell.pore_volume - mass[l];
+      } else if (cell.gain < 0) {
         dm = cell.gain * mass[l] / cell.water;
       } else {
-        const Real capacity = state.water.density * cell.pore_volume;
-        const Real room = capacity - cell.water;
-        // Room of the whole cell can be negative (compressed water) or too small: then by pores.
-        dm = is_unsaturated<M> && cell.pressure < 0 && room > cell.gain
+        // Room of the whole cell can be too small: then by pores.
+        dm = is_unsaturated<M> && room > cell.gain
                  ? cell.gain * (state.water.density * pores - mass[l]) / room
                  : cell.gain * pores / cell.pore_volume;
       }
