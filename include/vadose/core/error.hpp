@@ -6,6 +6,7 @@
 /// its unit and the allowed range.
 
 #include <cstdio>
+#include <initializer_list>
 #include <stdexcept>
 #include <string>
 #include <string_view>
@@ -39,6 +40,14 @@ inline std::string text(Real value) {
   char buffer[40];
   std::snprintf(buffer, sizeof buffer, "%.9g", value);
   return buffer;
+}
+
+/// Pieces of text one after the other. (Appended: `"x" + std::string` draws a false -Wrestrict
+/// error from g++ 12.)
+inline std::string joined(std::initializer_list<std::string> pieces) {
+  std::string all;
+  for (const std::string& piece : pieces) all += piece;
+  return all;
 }
 
 /// Raises SetupError "name = value outside range [unit]".

@@ -133,7 +133,8 @@ void proper_box(const std::string& name, const Box<Dim>& box) {
   for (int d = 0; d < Dim; ++d) {
     finite(name + " low " + axis_name(d), box.low[d], "m");
     if (!is_finite(box.high[d]) || !(box.high[d] > box.low[d]))
-      fail(name + " high " + axis_name(d), box.high[d], "(" + text(box.low[d]) + ", inf)", "m");
+      fail(name + " high " + axis_name(d), box.high[d], joined({"(", text(box.low[d]), ", inf)"}),
+           "m");
   }
 }
 

@@ -23,7 +23,8 @@ class Progress {
       : begin_(start_time), end_(end_time), interval_(interval), stream_(stream) {
     check::finite("start_time", start_time, "s");
     if (!is_finite(end_time) || !(end_time > start_time))
-      check::fail("end_time", end_time, "(" + check::text(start_time) + ", inf)", "s");
+      check::fail("end_time", end_time, check::joined({"(", check::text(start_time), ", inf)"}),
+                  "s");
     check::non_negative("interval", interval, "s");
     if (!stream) throw SetupError("stream = (missing), allowed: an open FILE* [-]");
   }

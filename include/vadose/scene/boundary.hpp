@@ -95,7 +95,7 @@ inline void face(Face face, int dim) {
 /// No region, or one of `dim` dimensions.
 inline void region(const AnyRegion& region, int dim) {
   if (region.given() && region.dim() != dim)
-    fail("region dimension", region.dim(), "{" + std::to_string(dim) + "}", "-");
+    fail("region dimension", region.dim(), joined({"{", std::to_string(dim), "}"}), "-");
 }
 
 /// A region of `dim` dimensions.

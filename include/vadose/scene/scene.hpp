@@ -268,8 +268,10 @@ class Scene {
   }
   void check_bound(const std::string& name, Real value, int d, Real slack) const {
     if (!(value >= box_.low[d] - slack && value <= box_.high[d] + slack))
-      check::fail(name, value,
-                  "[" + check::text(box_.low[d]) + ", " + check::text(box_.high[d]) + "]", "m");
+      check::fail(
+          name, value,
+          check::joined({"[", check::text(box_.low[d]), ", ", check::text(box_.high[d]), "]"}),
+          "m");
   }
 
   /// Exactly the start values that the model needs, each in its range.
@@ -300,7 +302,8 @@ class Scene {
     if constexpr (is_unsaturated<M>) {
       const Real residual = swrc::residual_saturation(material.retention);
       if (!is_finite(saturation) || !(saturation > residual && saturation <= 1))
-        check::fail("saturation", saturation, "(" + check::text(residual) + ", 1]", "-");
+        check::fail("saturation", saturation, check::joined({"(", check::text(residual), ", 1]"}),
+                    "-");
       check::finite("suction of saturation " + check::text(saturation),
                     swrc::suction(material.retention, saturation, material.porosity), "Pa");
     }
@@ -345,7 +348,7 @@ class Scene {
                     "(-inf, " + check::text(box_.high[d]) + "]", "m");
       if (!(bounds.high[d] >= box_.low[d] - slack))
         check::fail("region high " + check::axis_name(d), bounds.high[d],
-                    "[" + check::text(box_.low[d]) + ", inf)", "m");
+                    check::joined({"[", check::text(box_.low[d]), ", inf)"}), "m");
     }
   }
 
@@ -403,10 +406,10 @@ class Scene {
       const Real pressure = state.water_pressure(index, point.position);
       check::finite("liquid_pressure", pressure, "Pa");
       if (given(o.surface_level) && !(pressure >= 0))
-        check::fail(
-            "surface_level", o.surface_level,
-            "[" + check::text(height(point.position, gravity)) + ", inf), the height of the points",
-            "m");
+        check::fail("surface_level", o.surface_level,
+                    check::joined({"[", check::text(height(point.position, gravity)),
+                                   ", inf), the height of the points"}),
+                    "m");
     }
   }
 
