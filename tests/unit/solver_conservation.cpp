@@ -168,7 +168,8 @@ TEST_CASE("free water collides: momentum closes with the counted impulse") {
   const Total start = momentum(solver);
   REQUIRE(run(solver, 300));
   Total end = momentum(solver);
-  for (int d = 0; d < 2; ++d) end.sum[static_cast<std::size_t>(d)] += solver.state().open_impulse[d];
+  for (int d = 0; d < 2; ++d)
+    end.sum[static_cast<std::size_t>(d)] += solver.state().open_impulse[d];
   CHECK(end.relative_to(start) < 1e-12);
 }
 
