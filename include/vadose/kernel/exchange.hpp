@@ -88,16 +88,6 @@ void find_flux(State<M>& state, const CellView<M>& view, int axis, FaceFlux& fac
   face.flux = face.area * flux;
 }
 
-/// Water that leaves through a face comes from the cell it leaves; the cell on that side, or
-/// nullptr where it comes from outside.
-template <class M>
-Cell<State<M>::dim>* donor(State<M>& state, const CellView<M>& view, int axis,
-                           const FaceFlux& face) noexcept {
-  const std::int32_t e = face.flux > 0 ? view.neighbour(axis, -1) : view.entry();
-  const std::int32_t owner = state.nodes.dof[static_cast<std::size_t>(e)];
-  return owner < 0 ? nullptr : &state.nodes.cell[static_cast<std::size_t>(owner)];
-}
-
 /// All face fluxes.
 template <class M>
 void find_fluxes(State<M>& state) {

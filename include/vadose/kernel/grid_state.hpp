@@ -139,7 +139,6 @@ namespace node_flag {
 inline constexpr std::uint16_t solid_fixed = 1;   ///< << axis: no solid velocity along the axis
 inline constexpr std::uint16_t liquid_fixed = 8;  ///< << axis: no liquid velocity along the axis
 inline constexpr std::uint16_t special = 64;      ///< friction or prescribed motion: look it up
-inline constexpr std::uint16_t outside = 128;     ///< beyond the box
 }  // namespace node_flag
 
 }  // namespace vadose

@@ -245,8 +245,7 @@ void tie_normal(const Real (&normal)[Dim], bool rigid, NodeMotion<Dim>& node) no
 
 /// Motion of a node prescribed by the user, and friction on walls.
 template <class M>
-void apply_special(const State<M>& state, std::int32_t entry,
-                   const NodeMotion<State<M>::dim>& before, NodeMotion<State<M>::dim>& node) {
+void apply_special(const State<M>& state, std::int32_t entry, NodeMotion<State<M>::dim>& node) {
   constexpr int dim = State<M>::dim;
   for (const auto& s : state.special) {
     if (s.entry != entry) continue;
@@ -268,7 +267,6 @@ void apply_special(const State<M>& state, std::int32_t entry,
     const Real keep = speed > 0 ? max(0.0, 1 - s.friction * into / speed) : 0;
     for (int d = 0; d < dim; ++d)
       if (d != n) node.solid[d] *= keep;
-    static_cast<void>(before);
   }
 }
 
@@ -358,8 +356,7 @@ void advance_pair(const State<M>& state, const NodeSums<State<M>::dim>& sums, Re
 /// Closed surfaces and walls, after the velocities.
 template <class M>
 void apply_boundaries(const State<M>& state, const NodeSums<State<M>::dim>& sums,
-                      std::int32_t entry, std::uint16_t flags,
-                      const NodeMotion<State<M>::dim>& before, NodeMotion<State<M>::dim>& node) {
+                      std::int32_t entry, std::uint16_t flags, NodeMotion<State<M>::dim>& node) {
   constexpr int dim = State<M>::dim;
   const bool both = node.liquid_mass > 0 && (is_rigid<M> || node.solid_mass > 0);
   if (sums.closed_surface && both) {
@@ -373,7 +370,7 @@ void apply_boundaries(const State<M>& state, const NodeSums<State<M>::dim>& sums
     if (flags & (node_flag::solid_fixed << d)) node.solid[d] = 0;
     if (flags & (node_flag::liquid_fixed << d)) node.liquid[d] = 0;
   }
-  if (flags & node_flag::special) apply_special(state, entry, before, node);
+  if (flags & node_flag::special) apply_special(state, entry, node);
 }
 
 /// Writes the results of one node.
@@ -467,7 +464,7 @@ void advance_node(State<M>& state, const CellView<M>& view) {
         node.liquid[d] += state.dt * node.liquid_force[d] / node.liquid_mass;
     }
   }
-  apply_boundaries(state, sums, view.entry(), flags, before, node);
+  apply_boundaries(state, sums, view.entry(), flags, node);
   store_node(state, i, sums, porosity, before, node);
 }
 

@@ -104,7 +104,6 @@ struct StepOptions {
 struct alignas(64) StepSums {
   Real max_speed2 = 0;  ///< [m2/s2]
   Real max_wave2 = 0;   ///< largest dry p-wave speed squared [m2/s2]
-  Real max_advection = 0;
   bool failed = false;
 };
 
@@ -146,8 +145,6 @@ struct State {
   /// Impulse of pressure forces that no phase took so far [N s]: at nodes of free water, by packing
   /// noise of its points; at the fringe of the skeleton. Momentum of a closed system closes with it.
   Vec<dim> open_impulse = Vec<dim>::Zero();
-  bool has_free = false;  ///< free points exist
-  Real loads_factor = 1;
 
   std::vector<SurfaceLoad<dim>> loads;
   std::vector<std::function<Real(Real)>> factors;

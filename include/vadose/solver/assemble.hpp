@@ -100,7 +100,6 @@ void seed_water(State<M>& state, const Scene<M>& scene, const InitialState<M>& i
     liquid.set(field::porosity, 1);
     liquid.set(field::liquid_pressure, p);
     state.liquid.append(liquid.all(), state.free_group());
-    state.has_free = true;
   }
 }
 

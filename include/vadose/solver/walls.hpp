@@ -62,7 +62,7 @@ std::uint16_t flag_node(const State<M>& state, const Walls<State<M>::dim>& walls
   SpecialNode<dim> extra;
   extra.entry = entry;
   for (int d = 0; d < dim; ++d) {
-    if (node[d] > grid.cells()[d]) return node_flag::outside;
+    if (node[d] > grid.cells()[d]) return 0;  // beyond the box: no mass
     for (int s = 0; s < 2; ++s) {
       if (node[d] != (s == 0 ? 0 : grid.cells()[d])) continue;
       bool friction = false, open = false;
