@@ -249,7 +249,7 @@ void map_loads(State<M>& state) {
   constexpr int dim = State<M>::dim;
   const Real h = state.grid.cell_size();
   for (const auto& load : state.loads) {
-    const Real factor = state.factors[load.factor] ? state.factors[load.factor](state.time) : 1;
+    const Real factor = state.factor_values[load.factor];
     Index<dim> cell;
     Real xi[dim];
     for (int d = 0; d < dim; ++d) {

@@ -4,6 +4,8 @@
 /// \file
 /// Steps 5 to 7, [Zhan] 3.4 (d), (e): forces, drag, walls and new velocities of every node.
 
+#include <algorithm>
+
 #include <vadose/kernel/faces.hpp>
 #include <vadose/kernel/map_to_grid.hpp>
 
@@ -247,27 +249,25 @@ void tie_normal(const Real (&normal)[Dim], bool rigid, NodeMotion<Dim>& node) no
 template <class M>
 void apply_special(const State<M>& state, std::int32_t entry, NodeMotion<State<M>::dim>& node) {
   constexpr int dim = State<M>::dim;
-  for (const auto& s : state.special) {
-    if (s.entry != entry) continue;
-    const Real factor = s.factor < state.factors.size() && state.factors[s.factor]
-                            ? state.factors[s.factor](state.time)
-                            : 1;
-    for (int d = 0; d < dim; ++d)
-      if (s.prescribed[d]) node.solid[d] = factor * s.velocity[d];
-    if (s.friction_axis < 0) continue;
-    const int n = s.friction_axis;
-    const Real outward = s.friction_side == 0 ? -1 : 1;
-    const Real into = outward * node.solid[n];
-    if (into <= 0) continue;  // leaves the wall: no contact
-    node.solid[n] = 0;
-    Real speed = 0;
-    for (int d = 0; d < dim; ++d)
-      if (d != n) speed += node.solid[d] * node.solid[d];
-    speed = std::sqrt(speed);
-    const Real keep = speed > 0 ? max(0.0, 1 - s.friction * into / speed) : 0;
-    for (int d = 0; d < dim; ++d)
-      if (d != n) node.solid[d] *= keep;
-  }
+  const auto found = std::lower_bound(
+      state.special.begin(), state.special.end(), entry,
+      [](const SpecialNode<dim>& s, std::int32_t wanted) { return s.entry < wanted; });
+  const SpecialNode<dim>& s = *found;  // flagged nodes are listed, in ascending order
+  for (int d = 0; d < dim; ++d)
+    if (s.prescribed[d]) node.solid[d] = state.factor_values[s.factor] * s.velocity[d];
+  if (s.friction_axis < 0) return;
+  const int n = s.friction_axis;
+  const Real outward = s.friction_side == 0 ? -1 : 1;
+  const Real into = outward * node.solid[n];
+  if (into <= 0) return;  // leaves the wall: no contact
+  node.solid[n] = 0;
+  Real speed = 0;
+  for (int d = 0; d < dim; ++d)
+    if (d != n) speed += node.solid[d] * node.solid[d];
+  speed = std::sqrt(speed);
+  const Real keep = speed > 0 ? max(0.0, 1 - s.friction * into / speed) : 0;
+  for (int d = 0; d < dim; ++d)
+    if (d != n) node.solid[d] *= keep;
 }
 
 /// DEVIATION: [Zhan] Eq. (20) prints n m g / k without S; Eq. (2) has it, and so has this.

@@ -147,8 +147,9 @@ struct State {
   Vec<dim> open_impulse = Vec<dim>::Zero();
 
   std::vector<SurfaceLoad<dim>> loads;
-  std::vector<std::function<Real(Real)>> factors;
-  std::vector<SpecialNode<dim>> special;
+  std::vector<std::function<Real(Real)>> factors;  ///< of time [s]; empty: 1
+  std::vector<Real> factor_values;                 ///< the same at the present time [-]
+  std::vector<SpecialNode<dim>> special;           ///< in ascending order of entry
   std::vector<HeldPressure<dim>> held;
 
   AlignedVector<kernel::Tile<dim>> tiles;  ///< two per thread

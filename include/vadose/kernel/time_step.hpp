@@ -97,6 +97,14 @@ StableStep wet_step(const State<M>& state) {
   return step;
 }
 
+/// Time factors of loads and prescribed motion at the present time: each is called once per step.
+template <class M>
+void find_factors(State<M>& state) {
+  state.factor_values.resize(state.factors.size());
+  for (std::size_t i = 0; i < state.factors.size(); ++i)
+    state.factor_values[i] = state.factors[i] ? state.factors[i](state.time) : 1;
+}
+
 /// Largest stable step of the present state, before the factor C, and motion limits after it.
 template <class M>
 StableStep stable_step(const State<M>& state) {

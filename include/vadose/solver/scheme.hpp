@@ -29,6 +29,7 @@ struct Explicit {
     stable.take(dt_limit, StepLimit::user);
     state.dt = stable.dt;
     for (StepSums& s : state.sums) s = StepSums{};
+    kernel::find_factors(state);
     if constexpr (has_liquid<M>) {
       if constexpr (has_skeleton<M>) kernel::find_faces(state);  // (c) k and S between cells
       kernel::map_liquid(state);                                 // (a) liquid to nodes
