@@ -138,6 +138,8 @@ struct State {
 
   Real time = 0;           ///< [s]
   Real dt = 0;             ///< step in work [s]
+  Real flip_share = 1;     ///< exp(-pic_rate dt) of a blending transfer [-]
+  Real free_memory = 1;    ///< exp(-free_relaxation dt) [-]
   std::int64_t step = 0;   ///< steps taken
   Real slack = 0;          ///< motion since the last sort [m]
   bool frozen = false;     ///< liquid state held while the skeleton settles

@@ -105,6 +105,16 @@ void find_factors(State<M>& state) {
     state.factor_values[i] = state.factors[i] ? state.factors[i](state.time) : 1;
 }
 
+/// Takes a step into work: its length and what follows from it for all points.
+template <class M>
+void begin_step(State<M>& state, Real dt) {
+  state.dt = dt;
+  if constexpr (M::Transfer::blends) state.flip_share = std::exp(-state.transfer.pic_rate * dt);
+  if constexpr (has_liquid<M>) state.free_memory = std::exp(-state.options.free_relaxation * dt);
+  for (StepSums& s : state.sums) s = StepSums{};
+  find_factors(state);
+}
+
 /// Largest stable step of the present state, before the factor C, and motion limits after it.
 template <class M>
 StableStep stable_step(const State<M>& state) {

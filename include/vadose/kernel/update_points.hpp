@@ -126,7 +126,7 @@ VADOSE_INLINE void update_velocity(const State<M>& state, Points& points, std::s
                                    const PointMotion<State<M>::dim>& motion) noexcept {
   constexpr int dim = State<M>::dim;
   if constexpr (M::Transfer::blends) {
-    const Lanes keep(std::exp(-state.transfer.pic_rate * state.dt));
+    const Lanes keep(state.flip_share);
     for (int d = 0; d < dim; ++d) {
       const Lanes flip = points.load(field::velocity, b, d) + motion.increment[d];
       points.store(field::velocity, b, d, keep * flip + (Lanes(1.0) - keep) * motion.velocity[d]);
@@ -390,7 +390,7 @@ VADOSE_INLINE void free_batch(State<M>& state, std::size_t b,
   double* pressure = points.at(field::liquid_pressure, b);
   double* volume = points.at(field::volume, b);
   const Real bulk_modulus = state.water.bulk_modulus;
-  const Real keep = std::exp(-state.options.free_relaxation * state.dt);
+  const Real keep = state.free_memory;
   for (int l = 0; l < lane_count; ++l) {
     const std::int32_t owner = state.nodes.dof[static_cast<std::size_t>(entries[cells.index[l]])];
     if (owner < 0 || !(volume[l] > 0)) continue;

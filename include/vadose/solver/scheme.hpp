@@ -27,9 +27,7 @@ struct Explicit {
     }
     kernel::StableStep stable = kernel::stable_step(state);
     stable.take(dt_limit, StepLimit::user);
-    state.dt = stable.dt;
-    for (StepSums& s : state.sums) s = StepSums{};
-    kernel::find_factors(state);
+    kernel::begin_step(state, stable.dt);
     if constexpr (has_liquid<M>) {
       if constexpr (has_skeleton<M>) kernel::find_faces(state);  // (c) k and S between cells
       kernel::map_liquid(state);                                 // (a) liquid to nodes
