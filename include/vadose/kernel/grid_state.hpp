@@ -129,6 +129,7 @@ struct GridState {
   std::vector<Real> ledger_in;       ///< inflow of a block through each HeldPressure [kg]
   std::vector<Cell<Dim>> cell;
   std::vector<char> retry;        ///< blocks whose pressures are not found yet, one per slot
+  std::vector<char> sought;       ///< scratch: retry before a pass
   std::vector<std::int32_t> dof;  ///< entry of the cell whose pressure a cell uses, -1: none
   std::vector<FaceFlux> face;     ///< Dim per cell
   std::vector<std::uint16_t> node_flags;  ///< walls and prescribed motion, see NodeFlag

@@ -156,7 +156,8 @@ Record member_sums(const CellView<M>& view, const AlignedVector<Record>& records
 /// Marks the neighbours of blocks with unknown pressures: their points count there too.
 template <class M>
 void widen_retry(State<M>& state) {
-  const std::vector<char> own = state.nodes.retry;
+  state.nodes.sought = state.nodes.retry;
+  const auto& own = state.nodes.sought;
   for (int s = 0; s < state.grid.slots(); ++s) {
     if (!own[static_cast<std::size_t>(s)]) continue;
     for_cube<State<M>::dim>(-1, 2, [&](const Index<State<M>::dim>& step) {
@@ -188,14 +189,14 @@ void solve_unsaturated(State<M>& state) {
   for (int pass = 0; pass < max_passes; ++pass) {
     clear_content(state);
     sum_content(state, pass == 0);
-    const std::vector<char> sought = nodes.retry;
+    nodes.sought = nodes.retry;
     std::fill(nodes.retry.begin(), nodes.retry.end(), char{0});
     for_cells(state.grid, state.options.threads,
               [&](std::int32_t e, const Index<dim>& local, int slot, int) {
                 const auto i = static_cast<std::size_t>(e);
                 auto& cell = nodes.cell[i];
                 if (nodes.dof[i] != e || cell.kind != CellKind::soil) return;
-                if (!sought[static_cast<std::size_t>(slot)] || cell.low > cell.high) return;
+                if (!nodes.sought[static_cast<std::size_t>(slot)] || cell.low > cell.high) return;
                 const Record sums = member_sums(CellView<M>(state, local, slot), nodes.content);
                 const Real target = cell.water / state.water.density;
                 const Real floor = state.soils[cell.material].pressure_floor;
