@@ -19,13 +19,15 @@ constexpr int stress_index(int a, int b) noexcept {
 
 /// Value and moments of the velocity that a batch hands to the nodes: v + C (x_I - x_p), C being
 /// the gradient (TPIC) or B D^-1 (APIC, D = second moment of the weights at the present place).
-/// `value` is for the first node of each point, `moment[e]` per cell along axis e.
+/// `value` is for the first node of each point; `moment[e]` is what Scatter takes along axis e:
+/// mass times the change per cell.
 template <class M, class Shape, class Points>
 VADOSE_INLINE void affine_velocity(const State<M>& state, const Points& points, std::size_t b,
                                    const Stencil<Shape, State<M>::dim>& stencil,
                                    const TileFrame<State<M>::dim>& frame,
-                                   const Lanes (&x)[State<M>::dim], Lanes (&value)[State<M>::dim],
-                                   Lanes (&moment)[State<M>::dim][State<M>::dim]) noexcept {
+                                   const Lanes (&x)[State<M>::dim], const Lanes& mass,
+                                   Lanes (&value)[State<M>::dim],
+                                   Lanes (&moment)[State<M>::dim][lane_count]) noexcept {
   constexpr int dim = State<M>::dim;
   const Real h = state.grid.cell_size();
   for (int e = 0; e < dim; ++e) {
@@ -40,11 +42,13 @@ VADOSE_INLINE void affine_velocity(const State<M>& state, const Points& points, 
       // Hat functions have no second moment at a node; B is small there too.
       over_moment = Lanes(1.0) / max(second, Lanes(1e-3 * h * h));
     }
+    for (auto& r : moment[e]) r = Lanes(0.0);
     for (int d = 0; d < dim; ++d) {
       const Lanes c = points.load(field::affine, b, d * dim + e) * over_moment;
       value[d] += c * (first - x[e]);
-      moment[e][d] = c * Lanes(h);
+      moment[e][lane::momentum + d] = mass * (c * Lanes(h));
     }
+    transpose(moment[e]);
   }
 }
 
@@ -90,15 +94,8 @@ VADOSE_INLINE void map_solid_batch(const State<M>& state, std::size_t b,
   Scatter<true, affine, Shape, dim> scatter;
   Lanes velocity[dim];
   for (int d = 0; d < dim; ++d) velocity[d] = state.solid.load(field::velocity, b, d);
-  if constexpr (affine) {
-    Lanes moment[dim][dim];
-    affine_velocity(state, state.solid, b, stencil, frame, x, velocity, moment);
-    for (int e = 0; e < dim; ++e) {
-      for (auto& r : scatter.moment[e]) r = Lanes(0.0);
-      for (int d = 0; d < dim; ++d) scatter.moment[e][lane::momentum + d] = mass * moment[e][d];
-      transpose(scatter.moment[e]);
-    }
-  }
+  if constexpr (affine)
+    affine_velocity(state, state.solid, b, stencil, frame, x, mass, velocity, scatter.moment);
   for (auto& r : scatter.value) r = Lanes(0.0);
   scatter.value[lane::mass] = mass;
   for (int d = 0; d < dim; ++d) scatter.value[lane::momentum + d] = mass * velocity[d];
@@ -197,15 +194,8 @@ VADOSE_INLINE void map_liquid_batch(const State<M>& state, std::size_t b,
   Scatter<viscous, affine, shape::Linear, dim> scatter;
   Lanes velocity[dim];
   for (int d = 0; d < dim; ++d) velocity[d] = state.liquid.load(field::velocity, b, d);
-  if constexpr (affine) {
-    Lanes moment[dim][dim];
-    affine_velocity(state, state.liquid, b, stencil, frame, x, velocity, moment);
-    for (int e = 0; e < dim; ++e) {
-      for (auto& r : scatter.moment[e]) r = Lanes(0.0);
-      for (int d = 0; d < dim; ++d) scatter.moment[e][lane::momentum + d] = mass * moment[e][d];
-      transpose(scatter.moment[e]);
-    }
-  }
+  if constexpr (affine)
+    affine_velocity(state, state.liquid, b, stencil, frame, x, mass, velocity, scatter.moment);
   for (auto& r : scatter.value) r = Lanes(0.0);
   scatter.value[lane::mass] = mass;
   for (int d = 0; d < dim; ++d) scatter.value[lane::momentum + d] = mass * velocity[d];
