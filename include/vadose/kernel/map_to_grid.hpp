@@ -233,30 +233,35 @@ void map_liquid(State<M>& state) {
   });
 }
 
-/// Loads on the ground to nodes (hat functions at the surface itself). Few: one thread.
+/// Calls f(entry, weight) for the nodes around a place that exist (hat functions).
+template <int Dim, class F>
+void for_hat_nodes(const BlockGrid<Dim>& grid, const Vec<Dim>& x, F&& f) {
+  Index<Dim> cell;
+  Real xi[Dim];
+  for (int d = 0; d < Dim; ++d) {
+    cell[d] = grid.cell_of(x[d], d);
+    xi[d] = (x[d] - grid.origin()[d]) / grid.cell_size() - cell[d];
+  }
+  for_cube<Dim>(0, 2, [&](const Index<Dim>& corner) {
+    Index<Dim> node = cell;
+    Real w = 1;
+    for (int d = 0; d < Dim; ++d) {
+      node[d] += corner[d];
+      w *= corner[d] ? xi[d] : 1 - xi[d];
+    }
+    const std::int32_t e = grid.entry(node);
+    if (e != grid.outside()) f(static_cast<std::size_t>(e), w);
+  });
+}
+
+/// Loads on the ground to nodes, at the surface itself. Few: one thread.
 template <class M>
 void map_loads(State<M>& state) {
-  constexpr int dim = State<M>::dim;
-  const Real h = state.grid.cell_size();
   for (const auto& load : state.loads) {
     const Real factor = state.factor_values[load.factor];
-    Index<dim> cell;
-    Real xi[dim];
-    for (int d = 0; d < dim; ++d) {
-      cell[d] = state.grid.cell_of(load.position[d], d);
-      xi[d] = (load.position[d] - state.grid.origin()[d]) / h - cell[d];
-    }
-    for_cube<dim>(0, 2, [&](const Index<dim>& corner) {
-      Index<dim> node = cell;
-      Real w = factor;
-      for (int d = 0; d < dim; ++d) {
-        node[d] += corner[d];
-        w *= corner[d] ? xi[d] : 1 - xi[d];
-      }
-      const std::int32_t e = state.grid.entry(node);
-      if (e == state.grid.outside()) return;
-      for (int d = 0; d < dim; ++d)
-        state.nodes.solid_in[static_cast<std::size_t>(e)][lane::force + d] += w * load.force[d];
+    for_hat_nodes(state.grid, load.position, [&](std::size_t node, Real w) {
+      for (int d = 0; d < State<M>::dim; ++d)
+        state.nodes.solid_in[node][lane::force + d] += factor * w * load.force[d];
     });
   }
 }

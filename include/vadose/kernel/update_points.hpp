@@ -521,25 +521,10 @@ void update_liquid(State<M>& state) {
 template <class M>
 void move_loads(State<M>& state) {
   constexpr int dim = State<M>::dim;
-  const Real h = state.grid.cell_size();
   for (auto& load : state.loads) {
-    Index<dim> cell;
-    Real xi[dim];
-    for (int d = 0; d < dim; ++d) {
-      cell[d] = state.grid.cell_of(load.position[d], d);
-      xi[d] = (load.position[d] - state.grid.origin()[d]) / h - cell[d];
-    }
     Vec<dim> v = Vec<dim>::Zero();
-    for_cube<dim>(0, 2, [&](const Index<dim>& corner) {
-      Index<dim> node = cell;
-      Real w = 1;
-      for (int d = 0; d < dim; ++d) {
-        node[d] += corner[d];
-        w *= corner[d] ? xi[d] : 1 - xi[d];
-      }
-      const std::int32_t e = state.grid.entry(node);
-      for (int d = 0; d < dim; ++d)
-        v[d] += w * state.nodes.solid_out[static_cast<std::size_t>(e)][d];
+    for_hat_nodes(state.grid, load.position, [&](std::size_t node, Real w) {
+      for (int d = 0; d < dim; ++d) v[d] += w * state.nodes.solid_out[node][d];
     });
     load.position += state.dt * v;
   }
