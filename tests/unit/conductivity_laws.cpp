@@ -15,6 +15,8 @@
 #include <vadose/policy/swrc/gardner.hpp>
 #include <vadose/policy/swrc/tarantino.hpp>
 
+#include "../error_message.hpp"
+
 namespace {
 
 using vadose::lane_count;
@@ -23,6 +25,7 @@ using vadose::Real;
 using vadose::SetupError;
 namespace conductivity = vadose::conductivity;
 using doctest::Approx;
+using vadose_test::error_message;
 
 constexpr conductivity::Mualem mualem(Real lambda) {
   return {.saturated_conductivity = 9.8e-4, .reference_porosity = 0.4, .lambda = lambda};
@@ -43,19 +46,9 @@ struct CubicUser {
   Real conductivity(Real se, Real n) const { return se > 0.1 ? 1e-5 * n * se * se * se : 1e-8 * n; }
 };
 
-template <class F>
-std::string message_of(F&& f) {
-  try {
-    f();
-  } catch (const SetupError& error) {
-    return error.what();
-  }
-  return {};
-}
-
 template <class Law>
 void refused(const Law& law, const std::string& words) {
-  const std::string text = message_of([&] { law.validate(); });
+  const std::string text = error_message<SetupError>([&] { law.validate(); });
   CAPTURE(text);
   CHECK(text.find(words) != std::string::npos);
 }
@@ -253,7 +246,7 @@ TEST_CASE("conductivity: validate names the parameter that is wrong") {
   refused(conductivity::Table{}, "saturated_conductivity");
   using Entries = std::vector<conductivity::Table::Entry>;
   const auto table_refused = [](const Entries& entries, const std::string& words) {
-    const std::string text = message_of([&] {
+    const std::string text = error_message<SetupError>([&] {
       const conductivity::Table table({.saturated_conductivity = 1, .reference_porosity = 0.4},
                                       entries);
     });

@@ -23,23 +23,16 @@
 #include <vadose/policy/law/drucker_prager.hpp>
 #include <vadose/solver/solver.hpp>
 
+#include "../error_message.hpp"
+#include "../temporary_directory.hpp"
+
 namespace {
 
 using namespace vadose;
 using io::Measure;
 using io::SceneMeasure;
-
-struct GaugeDirectory {
-  std::filesystem::path path;
-  explicit GaugeDirectory(const std::string& name)
-      : path(std::filesystem::temp_directory_path() / ("vadose_gauges_" + name)) {
-    std::filesystem::remove_all(path);
-  }
-  GaugeDirectory(const GaugeDirectory&) = delete;
-  GaugeDirectory& operator=(const GaugeDirectory&) = delete;
-  ~GaugeDirectory() { std::filesystem::remove_all(path); }
-  std::string operator/(const std::string& file) const { return (path / file).string(); }
-};
+using vadose_test::error_message;
+using vadose_test::TemporaryDirectory;
 
 /// Columns of a CSV file by their heads.
 std::map<std::string, std::vector<Real>> read_csv(const std::string& path) {
@@ -92,16 +85,6 @@ std::pair<std::size_t, int> place_of(const Solver<GaugedSoil>& solver, std::int6
   return place;
 }
 
-template <class F>
-std::string setup_error(F&& f) {
-  try {
-    f();
-  } catch (const SetupError& error) {
-    return error.what();
-  }
-  return "(no error)";
-}
-
 /// What f(FILE*) prints.
 template <class F>
 std::string printed(F&& f) {
@@ -125,7 +108,7 @@ Real number_after(const std::string& text, const std::string& key) {
 }  // namespace
 
 TEST_CASE("gauges: a material point is followed by id, with everything that it carries") {
-  const GaugeDirectory directory("point");
+  const TemporaryDirectory directory("gauges_point");
   Solver<GaugedSoil> solver = gauged_solver();
   io::Gauges gauges{directory / "run.csv"};
   gauges.point("crest", {0.38, 0.29},
@@ -172,7 +155,7 @@ TEST_CASE("gauges: a material point is followed by id, with everything that it c
 }
 
 TEST_CASE("gauges: positions and lines read the water at rest, and NaN where there is nothing") {
-  const GaugeDirectory directory("place");
+  const TemporaryDirectory directory("gauges_place");
   Solver<GaugedSoil> solver = gauged_solver();
   io::Gauges gauges{directory / "rest.csv"};
   gauges.position("deep", {0.15, 0.03}, {Measure::liquid_pressure, Measure::suction});
@@ -214,7 +197,7 @@ TEST_CASE("gauges: positions and lines read the water at rest, and NaN where the
 }
 
 TEST_CASE("gauges: numbers of the scene are sums over its points") {
-  const GaugeDirectory directory("scene");
+  const TemporaryDirectory directory("gauges_scene");
   Solver<GaugedSoil> solver = gauged_solver();
   io::Gauges gauges{directory / "scene.csv"};
   gauges.scene({SceneMeasure::step, SceneMeasure::time_step, SceneMeasure::kinetic_energy});
@@ -276,7 +259,7 @@ TEST_CASE("gauges: numbers of the scene are sums over its points") {
 }
 
 TEST_CASE("gauges: what the model has not, wrong dimensions and late gauges are refused") {
-  const GaugeDirectory directory("refused");
+  const TemporaryDirectory directory("gauges_refused");
   using Dry = DryModel<Uniaxial>;
   Scene<Dry> scene{{.box = {{0.0}, {1.0}}, .cell_size = 0.1}};
   scene.add_soil(box({0.0}, {0.5}),
@@ -287,7 +270,7 @@ TEST_CASE("gauges: what the model has not, wrong dimensions and late gauges are 
   const Solver<Dry> solver{scene};
   const auto refusal = [&](auto&& add) {
     io::Gauges gauges{directory / "never.csv"};
-    return setup_error([&] {
+    return error_message<SetupError>([&] {
       add(gauges);
       gauges.record(solver);
     });
@@ -311,8 +294,9 @@ TEST_CASE("gauges: what the model has not, wrong dimensions and late gauges are 
   gauges.point("top", {0.5}, {Measure::displacement, Measure::bishop_stress});
   gauges.record(solver);
   CHECK(gauges.followed("top") == 9);
-  CHECK(setup_error([&] { gauges.scene({SceneMeasure::step}); }).find("before the first record") !=
-        std::string::npos);
+  CHECK(error_message<SetupError>([&] {
+          gauges.scene({SceneMeasure::step});
+        }).find("before the first record") != std::string::npos);
   const auto file = read_csv(directory / "dry.csv");
   CHECK(file.size() == 5);
   CHECK(file.count("top.bishop_stress_zz [Pa]") == 1);

@@ -14,10 +14,13 @@
 
 #include <vadose/io/history.hpp>
 
+#include "../error_message.hpp"
+
 namespace {
 
 namespace io = vadose::io;
 using vadose::Real;
+using vadose_test::error_message;
 
 std::string history_path(const std::string& name) {
   return (std::filesystem::temp_directory_path() / ("vadose_history_" + name)).string();
@@ -36,16 +39,6 @@ std::vector<Real> numbers_of(const std::string& line) {
   for (std::string cell; std::getline(in, cell, ',');)
     numbers.push_back(std::strtod(cell.c_str(), nullptr));
   return numbers;
-}
-
-template <class F>
-std::string history_error(F&& f) {
-  try {
-    f();
-  } catch (const io::OutputError& error) {
-    return error.what();
-  }
-  return "(no error)";
 }
 
 }  // namespace
@@ -81,23 +74,24 @@ TEST_CASE("history: wrong rows, wrong names and unwritable paths are refused") {
   const std::string path = history_path("wrong.csv");
   {
     io::History history(path, {{"time", "s"}, {"inflow", "kg"}});
-    const std::string message = history_error([&] { history.add({1.0}); });
+    const std::string message = error_message<io::OutputError>([&] { history.add({1.0}); });
     CHECK(message.find("row has 1 values, expected 2") != std::string::npos);
     CHECK(message.find(path) != std::string::npos);
     CHECK(lines_of(path).size() == 1);
   }
   std::filesystem::remove(path);
-  CHECK(history_error([&] {
+  CHECK(error_message<io::OutputError>([&] {
           io::History(path, {{"a,b", "m"}});
         }).find("a,b [m]") != std::string::npos);
-  CHECK(history_error([&] {
+  CHECK(error_message<io::OutputError>([&] {
           io::History(path, {{"", "m"}});
         }).find("is empty") != std::string::npos);
-  CHECK(history_error([&] { io::History(path, std::vector<io::Quantity>{}); }).find("no columns") !=
-        std::string::npos);
+  CHECK(error_message<io::OutputError>([&] {
+          io::History(path, std::vector<io::Quantity>{});
+        }).find("no columns") != std::string::npos);
   CHECK_FALSE(std::filesystem::exists(path));
   const std::string below = "/dev/null/history.csv";
-  CHECK(history_error([&] {
+  CHECK(error_message<io::OutputError>([&] {
           io::History(below, {{"time", "s"}});
         }).find("/dev/null") != std::string::npos);
 }
@@ -112,7 +106,8 @@ TEST_CASE("history: files append, move and tell that they are closed") {
   second.write("y\n");
   second.close();
   second.close();
-  CHECK(history_error([&] { second.write("z"); }).find("it is closed") != std::string::npos);
+  CHECK(error_message<io::OutputError>([&] { second.write("z"); }).find("it is closed") !=
+        std::string::npos);
   {
     io::File more(path, true);
     more.write("z\n");

@@ -7,13 +7,13 @@
 #include <array>
 #include <cmath>
 #include <cstdlib>
-#include <fstream>
 #include <random>
-#include <sstream>
 #include <string>
 #include <vector>
 
 #include <vadose/policy/law.hpp>
+
+#include "../reference_table.hpp"
 
 namespace laws_test {
 
@@ -25,49 +25,7 @@ using vadose::SymTensor;
 template <int N>
 using Tensor = SymTensor<Real, N>;
 
-/// Rows of a reference file; lines that begin with # are skipped, the first other line is the
-/// header.
-class Table {
- public:
-  explicit Table(const std::string& name) {
-    const std::string here = __FILE__;
-    const std::size_t slash = here.find_last_of('/');
-    std::ifstream file(here.substr(0, slash == std::string::npos ? 0 : slash + 1) +
-                       "../reference/" + name);
-    std::string line;
-    while (std::getline(file, line)) {
-      if (!line.empty() && line.back() == '\r') line.pop_back();
-      if (line.empty() || line.front() == '#') continue;
-      std::vector<std::string> cells = split(line);
-      if (header_.empty())
-        header_ = cells;
-      else
-        rows_.push_back(cells);
-    }
-  }
-  std::size_t size() const { return rows_.size(); }
-  const std::string& text(std::size_t row, const std::string& column) const {
-    return rows_.at(row).at(index(column));
-  }
-  Real number(std::size_t row, const std::string& column) const {
-    return std::strtod(text(row, column).c_str(), nullptr);
-  }
-
- private:
-  static std::vector<std::string> split(const std::string& line) {
-    std::vector<std::string> cells;
-    std::istringstream stream(line);
-    std::string cell;
-    while (std::getline(stream, cell, ',')) cells.push_back(cell);
-    return cells;
-  }
-  std::size_t index(const std::string& column) const {
-    const auto found = std::find(header_.begin(), header_.end(), column);
-    return static_cast<std::size_t>(found - header_.begin());
-  }
-  std::vector<std::string> header_;
-  std::vector<std::vector<std::string>> rows_;
-};
+using vadose_test::Table;
 
 /// Repeatable numbers in [low, high).
 class Random {

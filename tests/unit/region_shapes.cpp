@@ -10,6 +10,8 @@
 
 #include <vadose/grid/region.hpp>
 
+#include "../error_message.hpp"
+
 namespace {
 
 using vadose::Box;
@@ -17,6 +19,7 @@ using vadose::Real;
 using vadose::Region;
 using vadose::SetupError;
 using vadose::Vec;
+using vadose_test::error_message;
 
 constexpr Real nan_value = std::numeric_limits<Real>::quiet_NaN();
 constexpr Real infinity = std::numeric_limits<Real>::infinity();
@@ -27,16 +30,6 @@ Real sampled_area(const Region<2>& region, int n) {
   for (int i = 0; i < n; ++i)
     for (int j = 0; j < n; ++j) inside += region.contains(Vec<2>((i + 0.5) / n, (j + 0.5) / n));
   return Real(inside) / n / n;
-}
-
-template <class F>
-std::string message_of(F&& f) {
-  try {
-    f();
-  } catch (const SetupError& error) {
-    return error.what();
-  }
-  return "(no error)";
 }
 
 bool mentions(const std::string& text, const std::vector<std::string>& parts) {
@@ -221,7 +214,7 @@ TEST_CASE("region: wrong input is refused with name, value, range and unit") {
        [] { vadose::predicate([](const Vec<1>&) { return true; }, Box<1>{}); }},
   };
   for (const Wrong& wrong : table) {
-    const std::string message = message_of(wrong.build);
+    const std::string message = error_message<SetupError>(wrong.build);
     CAPTURE(message);
     CAPTURE(wrong.parts.front());
     CHECK(mentions(message, wrong.parts));

@@ -15,6 +15,7 @@
 #include <vadose/policy/swrc/van_genuchten.hpp>
 
 #include "../../examples/laws/brooks_corey.hpp"
+#include "../error_message.hpp"
 
 namespace {
 
@@ -24,6 +25,7 @@ using vadose::Real;
 using vadose::SetupError;
 namespace swrc = vadose::swrc;
 using doctest::Approx;
+using vadose_test::error_message;
 
 constexpr Real unit_weight = 9810;
 
@@ -35,16 +37,6 @@ constexpr swrc::Tarantino table4{
     .residual_saturation = 0.26, .a = 15.2, .lambda = 0.19, .unit_weight = unit_weight};
 
 const std::vector<Real> suctions = {1e-6, 1e-3, 1, 49, 300, 1.1e3, 5e3, 2.3e4, 1.9e5, 3e6, 1e9};
-
-template <class F>
-std::string message_of(F&& f) {
-  try {
-    f();
-  } catch (const SetupError& error) {
-    return error.what();
-  }
-  return {};
-}
 
 bool contains(const std::string& text, const std::string& part) {
   return text.find(part) != std::string::npos;
@@ -310,7 +302,7 @@ TEST_CASE("retention: tables pass through their entries, stay monotone and refus
 
   using Entries = std::vector<swrc::Table::Entry>;
   const auto refused = [](const Entries& entries, const std::string& words) {
-    const std::string text = message_of([&] { const swrc::Table table(entries); });
+    const std::string text = error_message<SetupError>([&] { const swrc::Table table(entries); });
     CAPTURE(text);
     CHECK(contains(text, words));
   };
@@ -321,12 +313,12 @@ TEST_CASE("retention: tables pass through their entries, stay monotone and refus
   refused({{1, 1}, {10, -0.7}}, "saturation = -0.7");
   refused({{1, 1}, {std::nan(""), 0.7}}, "entry 2");
   refused({{1, 1}}, "at least 2");
-  CHECK(contains(message_of([] { swrc::Table{}.validate(); }), "no entries"));
+  CHECK(contains(error_message<SetupError>([] { swrc::Table{}.validate(); }), "no entries"));
 }
 
 TEST_CASE("retention: validate names the parameter that is wrong") {
   const auto refused = [](auto curve, const std::string& words) {
-    const std::string text = message_of([&] { curve.validate(); });
+    const std::string text = error_message<SetupError>([&] { curve.validate(); });
     CAPTURE(text);
     CHECK(contains(text, words));
   };

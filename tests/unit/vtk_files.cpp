@@ -16,24 +16,15 @@
 #include <vadose/io/pvd_series.hpp>
 #include <vadose/io/vtk_points.hpp>
 
+#include "../error_message.hpp"
+#include "../temporary_directory.hpp"
+
 namespace {
 
 namespace io = vadose::io;
 using vadose::Real;
-
-/// A new empty directory, removed at the end.
-struct TemporaryDirectory {
-  std::filesystem::path path;
-  explicit TemporaryDirectory(const std::string& name)
-      : path(std::filesystem::temp_directory_path() / ("vadose_" + name)) {
-    std::filesystem::remove_all(path);
-    std::filesystem::create_directories(path);
-  }
-  TemporaryDirectory(const TemporaryDirectory&) = delete;
-  TemporaryDirectory& operator=(const TemporaryDirectory&) = delete;
-  ~TemporaryDirectory() { std::filesystem::remove_all(path); }
-  std::string operator/(const std::string& file) const { return (path / file).string(); }
-};
+using vadose_test::error_message;
+using vadose_test::TemporaryDirectory;
 
 std::string content(const std::string& path) {
   std::ifstream in(path, std::ios::binary);
@@ -99,20 +90,10 @@ const std::vector<Real> awkward = {0.1,
                                    std::numeric_limits<Real>::quiet_NaN(),
                                    2.0 / 7};
 
-template <class F>
-std::string output_error(F&& f) {
-  try {
-    f();
-  } catch (const io::OutputError& error) {
-    return error.what();
-  }
-  return "(no error)";
-}
-
 }  // namespace
 
 TEST_CASE("vtk: points and columns read back bit for bit in one to three dimensions") {
-  const TemporaryDirectory directory("vtk_points");
+  const TemporaryDirectory directory("vtk_points", true);
   for (int dim = 1; dim <= 3; ++dim) {
     const std::size_t points = 2;
     std::vector<Real> positions;
@@ -160,7 +141,7 @@ TEST_CASE("vtk: points and columns read back bit for bit in one to three dimensi
 }
 
 TEST_CASE("vtk: a file without points is valid, names are escaped") {
-  const TemporaryDirectory directory("vtk_empty");
+  const TemporaryDirectory directory("vtk_empty", true);
   const std::vector<io::Column> columns = {{"a<b & \"c\"", 3, {}}};
   io::write_vtp(directory / "none.vtp", 2, {}, columns);
   const std::string text = content(directory / "none.vtp");
@@ -171,38 +152,41 @@ TEST_CASE("vtk: a file without points is valid, names are escaped") {
 }
 
 TEST_CASE("vtk: columns of a wrong length are refused and leave no file") {
-  const TemporaryDirectory directory("vtk_wrong");
+  const TemporaryDirectory directory("vtk_wrong", true);
   const std::vector<Real> positions = {0, 0, 1, 1};
   const std::vector<io::Column> columns = {{"velocity [m/s]", 2, {1, 2, 3}}};
   const std::string path = directory / "wrong.vtp";
-  const std::string message = output_error([&] { io::write_vtp(path, 2, positions, columns); });
+  const std::string message =
+      error_message<io::OutputError>([&] { io::write_vtp(path, 2, positions, columns); });
   CHECK(message.find("velocity [m/s]") != std::string::npos);
   CHECK(message.find("3 values, expected 2 x 2") != std::string::npos);
-  CHECK(output_error([&] { io::write_vtp(path, 3, positions, {}); }).find("4 coordinates") !=
-        std::string::npos);
-  CHECK(output_error([&] { io::write_vtp(path, 0, positions, {}); }).find("0 dimensions") !=
-        std::string::npos);
+  CHECK(error_message<io::OutputError>([&] {
+          io::write_vtp(path, 3, positions, {});
+        }).find("4 coordinates") != std::string::npos);
+  CHECK(error_message<io::OutputError>([&] {
+          io::write_vtp(path, 0, positions, {});
+        }).find("0 dimensions") != std::string::npos);
   CHECK(std::filesystem::is_empty(directory.path));
 }
 
 TEST_CASE("vtk: unwritable paths are told with path and reason") {
-  const TemporaryDirectory directory("vtk_unwritable");
+  const TemporaryDirectory directory("vtk_unwritable", true);
   io::write_vtp(directory / "file.vtp", 1, std::vector<Real>{1.0}, {});
   // a file where a directory is needed
   const std::string below = directory / "file.vtp/points.vtp";
-  CHECK(output_error([&] { io::write_vtp(below, 1, {}, {}); }).find("file.vtp") !=
+  CHECK(error_message<io::OutputError>([&] { io::write_vtp(below, 1, {}, {}); }).find("file.vtp") !=
         std::string::npos);
   // a directory where the file should be: the part file is taken away again
   std::filesystem::create_directories(directory / "taken.vtp/inside");
   const std::string message =
-      output_error([&] { io::write_vtp(directory / "taken.vtp", 1, {}, {}); });
+      error_message<io::OutputError>([&] { io::write_vtp(directory / "taken.vtp", 1, {}, {}); });
   CHECK(message.find("cannot write file '" + (directory / "taken.vtp")) != std::string::npos);
   CHECK_FALSE(std::filesystem::exists(directory / "taken.vtp.part"));
   // a full device
   if (std::filesystem::exists("/dev/full")) {
     io::File full("/dev/full");
     const std::string bytes(1 << 20, 'x');
-    const std::string text = output_error([&] {
+    const std::string text = error_message<io::OutputError>([&] {
       full.write(bytes);
       full.close();
     });
@@ -211,7 +195,7 @@ TEST_CASE("vtk: unwritable paths are told with path and reason") {
 }
 
 TEST_CASE("vtk: the series is listed and valid after every write") {
-  const TemporaryDirectory directory("pvd");
+  const TemporaryDirectory directory("pvd", true);
   io::PvdSeries series(directory / "out/slope & co");
   CHECK_FALSE(std::filesystem::exists(series.path()));
   const std::vector<Real> times = {0.0, 0.1, 1.0 / 3};
@@ -235,17 +219,19 @@ TEST_CASE("vtk: the series is listed and valid after every write") {
     CHECK(series.size() == i + 1);
   }
   // time runs forward and is a number
-  CHECK(output_error([&] { series.write(0.2, 2, {}, {}); }).find("time = 0.2") !=
+  CHECK(error_message<io::OutputError>([&] { series.write(0.2, 2, {}, {}); }).find("time = 0.2") !=
         std::string::npos);
-  CHECK(output_error([&] { series.write(vadose::unset, 2, {}, {}); }).find("nan") !=
-        std::string::npos);
+  CHECK(error_message<io::OutputError>([&] {
+          series.write(vadose::unset, 2, {}, {});
+        }).find("nan") != std::string::npos);
   // a failed write leaves the list as it was, and the series goes on
   const std::vector<io::Column> wrong = {{"x [m]", 1, {1.0}}};
   const std::string before = content(series.path());
-  CHECK(output_error([&] { series.write(1.0, 2, {}, wrong); }) != "(no error)");
+  CHECK(error_message<io::OutputError>([&] { series.write(1.0, 2, {}, wrong); }) != "(no error)");
   CHECK(content(series.path()) == before);
   series.write(1.0, 2, {}, {});
   CHECK(series.size() == 4);
-  CHECK(output_error([] { io::PvdSeries{"some/directory/"}; }).find("no file name") !=
-        std::string::npos);
+  CHECK(error_message<io::OutputError>([] {
+          io::PvdSeries{"some/directory/"};
+        }).find("no file name") != std::string::npos);
 }

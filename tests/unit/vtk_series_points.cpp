@@ -17,21 +17,14 @@
 #include <vadose/policy/law/drucker_prager.hpp>
 #include <vadose/solver/two_phase_solver.hpp>
 
+#include "../error_message.hpp"
+#include "../temporary_directory.hpp"
+
 namespace {
 
 using namespace vadose;
-
-struct SeriesDirectory {
-  std::filesystem::path path;
-  explicit SeriesDirectory(const std::string& name)
-      : path(std::filesystem::temp_directory_path() / ("vadose_series_" + name)) {
-    std::filesystem::remove_all(path);
-  }
-  SeriesDirectory(const SeriesDirectory&) = delete;
-  SeriesDirectory& operator=(const SeriesDirectory&) = delete;
-  ~SeriesDirectory() { std::filesystem::remove_all(path); }
-  std::string operator/(const std::string& file) const { return (path / file).string(); }
-};
+using vadose_test::error_message;
+using vadose_test::TemporaryDirectory;
 
 std::string file_text(const std::string& path) {
   std::ifstream in(path, std::ios::binary);
@@ -161,20 +154,10 @@ void check_liquid(const Solver<WetSoil>& solver, const std::map<std::string, Ser
   CHECK(mass == doctest::Approx(balance.pore + balance.free).epsilon(1e-13));
 }
 
-template <class F>
-std::string series_error(F&& f) {
-  try {
-    f();
-  } catch (const io::OutputError& error) {
-    return error.what();
-  }
-  return "(no error)";
-}
-
 }  // namespace
 
 TEST_CASE("vtk series: both phases before and after steps hold the solver's state") {
-  const SeriesDirectory directory("wet");
+  const TemporaryDirectory directory("series_wet");
   Solver<WetSoil> solver = wet_solver();
   io::VtkSeries series{directory / "slope"};
   series.write(solver);
@@ -223,7 +206,7 @@ TEST_CASE("vtk series: both phases before and after steps hold the solver's stat
 }
 
 TEST_CASE("vtk series: columns by name, and a phase that is not there gets no file") {
-  const SeriesDirectory directory("chosen");
+  const TemporaryDirectory directory("series_chosen");
   Solver<WetSoil> solver = wet_solver();
   io::VtkSeries chosen{directory / "some", {"mean_stress", "kind"}};
   chosen.write(solver);
@@ -232,7 +215,7 @@ TEST_CASE("vtk series: columns by name, and a phase that is not there gets no fi
   CHECK(solid.count("mean_stress [Pa]") == 1);
   CHECK(read_columns(directory / "some_liquid_000000.vtp").count("kind [-]") == 1);
   io::VtkSeries wrong{directory / "wrong", {"pressure"}};
-  const std::string message = series_error([&] { wrong.write(solver); });
+  const std::string message = error_message<io::OutputError>([&] { wrong.write(solver); });
   CHECK(message.find("no column 'pressure', only id, material") != std::string::npos);
   CHECK_FALSE(std::filesystem::exists(directory / "wrong_solid_000000.vtp"));
 
