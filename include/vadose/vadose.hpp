@@ -41,6 +41,7 @@
 #include <vadose/kernel/map_to_grid.hpp>
 #include <vadose/kernel/momentum.hpp>
 #include <vadose/kernel/pressure.hpp>
+#include <vadose/kernel/rain.hpp>
 #include <vadose/kernel/state.hpp>
 #include <vadose/kernel/stencil.hpp>
 #include <vadose/kernel/tile.hpp>
@@ -86,6 +87,7 @@
 #include <vadose/scene/initial_state.hpp>
 #include <vadose/scene/scene.hpp>
 #include <vadose/solver/assemble.hpp>
+#include <vadose/solver/release_films.hpp>
 #include <vadose/solver/report.hpp>
 #include <vadose/solver/scheme.hpp>
 #include <vadose/solver/solver.hpp>

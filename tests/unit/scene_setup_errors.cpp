@@ -86,7 +86,8 @@ std::size_t count(const Scene<M>& s) {
                     s.template conditions<bc::PrescribedVelocity<M::Kinematics::dim>>().size() +
                     s.template conditions<bc::Impermeable>().size() +
                     s.template conditions<bc::PrescribedPressure<M::Kinematics::dim>>().size() +
-                    s.template conditions<bc::ZeroSuction>().size());
+                    s.template conditions<bc::ZeroSuction>().size() +
+                    s.template conditions<bc::Rain>().size());
 }
 
 /// A wrong set-up and what its message must contain.

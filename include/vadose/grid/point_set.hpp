@@ -85,6 +85,12 @@ class PointSet {
     new_values_.insert(new_values_.end(), values.begin(), values.end());
     new_groups_.push_back(static_cast<std::uint8_t>(group));
   }
+  /// Calls f(components in field order, group) for every point that waits for the next sort.
+  template <class F>
+  void for_each_new(F&& f) const {
+    for (std::size_t i = 0; i < new_groups_.size(); ++i)
+      f(new_values_.data() + i * Fields::total, int{new_groups_[i]});
+  }
   /// Whether points wait for the next sort.
   bool has_new() const noexcept { return !new_groups_.empty(); }
   /// Removes a point; its lane is free until the next sort.

@@ -21,6 +21,8 @@ class WaterBalanceHistory {
                         {"water_initial", "kg"},
                         {"water_inflow", "kg"},
                         {"water_outflow", "kg"},
+                        {"water_rain", "kg"},
+                        {"water_film", "kg"},
                         {"water_lost", "kg"},
                         {"pore_water", "kg"},
                         {"free_water", "kg"},
@@ -37,9 +39,9 @@ class WaterBalanceHistory {
   void record(const S& solver) {
     const WaterBalance w = solver.water_balance();
     const SolidBalance s = solver.solid_balance();
-    history_.add({solver.time(), w.initial, w.inflow, w.outflow, w.lost, w.pore, w.free,
-                  w.closure(), w.relative_closure(), s.initial, s.lost, s.stored, s.closure(),
-                  s.relative_closure()});
+    history_.add({solver.time(), w.initial, w.inflow, w.outflow, w.rain, w.film, w.lost, w.pore,
+                  w.free, w.closure(), w.relative_closure(), s.initial, s.lost, s.stored,
+                  s.closure(), s.relative_closure()});
   }
 
   const std::string& path() const noexcept { return history_.path(); }

@@ -58,9 +58,9 @@ void print_summary(std::FILE* out, const S& solver) {
                solver.liquid().size());
   const WaterBalance w = solver.water_balance();
   std::fprintf(out,
-               "  water    %.6g kg at the start, %.6g in, %.6g out, %.6g left the box; now %.6g in "
-               "pores, %.6g free; closure %.2g kg (%.2g)\n",
-               w.initial, w.inflow, w.outflow, w.lost, w.pore, w.free, w.closure(),
+               "  water    %.6g kg at the start, %.6g rain, %.6g in, %.6g out, %.6g left the box; "
+               "now %.6g in pores, %.6g free, %.6g on the ground; closure %.2g kg (%.2g)\n",
+               w.initial, w.rain, w.inflow, w.outflow, w.lost, w.pore, w.free, w.film, w.closure(),
                w.relative_closure());
   const SolidBalance s = solver.solid_balance();
   std::fprintf(out,

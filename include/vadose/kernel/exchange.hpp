@@ -62,6 +62,10 @@ void find_flux(State<M>& state, const CellView<M>& view, int axis, FaceFlux& fac
   constexpr int dim = State<M>::dim;
   face.flux = 0;
   if (face.kind == FaceKind::closed || (face.kind == FaceKind::surface && face.held < 0)) return;
+  if (face.thirsty) {
+    face.flux = face.soil_below ? -face.supply : face.supply;
+    return;
+  }
   const auto& nodes = state.nodes;
   Real velocity = 0, mean_gradient = 0;
   for_cube<dim>(0, 2, [&](const Index<dim>& corner) {
@@ -86,6 +90,8 @@ void find_flux(State<M>& state, const CellView<M>& view, int axis, FaceFlux& fac
   // Water enters or leaves at a held pressure only down its head gradient.
   if (face.kind == FaceKind::surface && flux * face.head_gradient > 0) flux = 0;
   face.flux = face.area * flux;
+  if (face.fed)  // no more than there is
+    face.flux = face.soil_below ? max(face.flux, -face.supply) : min(face.flux, face.supply);
 }
 
 /// All face fluxes.
@@ -188,7 +194,7 @@ void find_gains(State<M>& state) {
                 if (dm > 0 && f.from)
                   for (int d = 0; d < dim; ++d)
                     momentum[d] += dm * (f.from->mean_velocity[d] - cell.mean_velocity[d]);
-                if (!f.from && f.face->held >= 0) {
+                if (!f.from && f.face->held >= 0 && !f.face->fed) {
                   const std::size_t at = (static_cast<std::size_t>(slot) * held +
                                           static_cast<std::size_t>(f.face->held)) *
                                          2;
@@ -230,6 +236,7 @@ void exchange_water(State<M>& state) {
     find_fluxes(state);
     limit_donors(state);
     find_gains(state);
+    settle_films(state);
     fill_submerged_pores(state);
   }
 }

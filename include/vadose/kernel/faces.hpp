@@ -4,7 +4,7 @@
 /// \file
 /// Step 4: faces between cells: head gradient, upstream saturation, conductivity.
 
-#include <vadose/kernel/pressure.hpp>
+#include <vadose/kernel/rain.hpp>
 
 namespace vadose::kernel {
 
@@ -109,6 +109,27 @@ std::int16_t find_held(const State<M>& state, int axis, int side, const Vec<Stat
   return -1;
 }
 
+/// Ground under rain. The soil could take k H / gamma at p = 0; given less than that it drinks all of
+/// it and its surface stays under suction, closed to the nodes; given more it is held at p = 0.
+template <class M>
+void rained_face(const State<M>& state, const CellView<M>& view, int axis,
+                 const Cell<State<M>::dim>& soil, FaceFlux& face) {
+  const bool upward = axis == State<M>::dim - 1 && face.soil_below;
+  const Real inward = face.soil_below ? face.head_gradient : -face.head_gradient;
+  face.fed = true;
+  face.supply = 0;
+  if (upward) {
+    const std::int32_t below = view.neighbour(axis, -1);
+    const auto& column = state.columns[column_of(state.grid, view.cell)];
+    if (column.top == below)
+      face.supply =
+          rain_on(state, column) + max(0.0, column.film) / (state.water.density * state.dt);
+  }
+  const Real potential = face.area * face.conductivity * max(0.0, inward) /
+                         state.soils[soil.material].material.unit_weight;
+  face.thirsty = inward >= 0 && face.supply <= potential;
+}
+
 /// Face between soil and air: open if a pressure is held at the surface there, else closed.
 template <class M>
 void surface_face(const State<M>& state, const CellView<M>& view, int axis,
@@ -126,6 +147,8 @@ void surface_face(const State<M>& state, const CellView<M>& view, int axis,
   at[axis] += (face.soil_below ? 0.5 : -0.5) * min(1.5, soil.fill) * h;
   const Real p = state.held[static_cast<std::size_t>(face.held)].pressure(centre, state.time);
   outer_face(state, axis, soil, at, p, face);
+  if (state.held[static_cast<std::size_t>(face.held)].supply)
+    rained_face(state, view, axis, soil, face);
 }
 
 /// Face between soil and a wall.
@@ -232,7 +255,7 @@ void find_reference_pressures(State<M>& state) {
               Real sum = 0, area = 0;
               for_faces(view, [&](const FaceFlux& face) {
                 if (face.kind != FaceKind::surface) return;
-                sum += face.area * (face.held < 0 ? own : face.held_pressure);
+                sum += face.area * (face.held < 0 || face.thirsty ? own : face.held_pressure);
                 area += face.area;
               });
               cell.has_reference = area > 0;
@@ -244,6 +267,7 @@ void find_reference_pressures(State<M>& state) {
 template <class M>
 void find_faces(State<M>& state) {
   constexpr int dim = State<M>::dim;
+  if (has_rain(state)) find_columns(state);
   find_conductivities(state);
   for_cells(state.grid, state.options.threads,
             [&](std::int32_t e, const Index<dim>& local, int slot, int) {

@@ -108,6 +108,9 @@ struct FaceFlux {
   Real flux = 0;           ///< volume per time, upwards along the axis, times A [m3/s]
   FaceKind kind = FaceKind::closed;
   std::int16_t held = -1;   ///< which HeldPressure; -1: a surface that lets no water through
+  bool fed = false;         ///< rain or its film feeds the surface and takes what comes out
+  bool thirsty = false;     ///< the soil drinks all it is given: its surface stays under suction
+  Real supply = 0;          ///< of a fed face: what it can take at most [m3/s]
   bool soil_below = false;  ///< of a surface or to_free face: the soil is on the lower side
 };
 

@@ -80,8 +80,20 @@ struct HeldPressure {
   int face_side = 0;
   std::function<bool(const Vec<Dim>&)> contains;        ///< part of it
   std::function<Real(const Vec<Dim>&, Real)> pressure;  ///< p(x, t) [Pa]
-  Real inflow = 0;                                      ///< water taken in so far [kg]
-  Real outflow = 0;                                     ///< water let out so far [kg]
+  /// Water offered at the ground surface [m/s per horizontal area] at time t [s]; empty: no limit.
+  std::function<Real(Real)> supply = {};
+  Real supply_rate = 0;  ///< the same at the present time [m/s]
+  Real inflow = 0;       ///< water taken in so far [kg]
+  Real outflow = 0;      ///< water let out so far [kg]
+};
+
+/// A vertical column of cells under rain.
+template <int Dim>
+struct RainColumn {
+  std::int32_t top = -1;  ///< highest cell that holds soil or water, -1: none
+  Index<Dim> top_cell{};  ///< its coordinates
+  Real area = 0;          ///< horizontal [m2]
+  Real film = 0;          ///< water on the ground that is no point yet [kg]; outlives the step
 };
 
 /// Numbers of the liquid.
@@ -153,6 +165,9 @@ struct State {
   std::vector<Real> factor_values;                 ///< the same at the present time [-]
   std::vector<SpecialNode<dim>> special;           ///< in ascending order of entry
   std::vector<HeldPressure<dim>> held;
+  std::vector<RainColumn<dim>> columns;  ///< under rain; empty without
+  Real rain = 0;                         ///< fallen so far [kg]
+  std::int64_t next_liquid_id = 0;       ///< of the next liquid point
 
   AlignedVector<kernel::Tile<dim>> tiles;  ///< two per thread
   std::vector<StepSums> sums;              ///< one per thread

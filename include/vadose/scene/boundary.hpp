@@ -277,5 +277,29 @@ struct ZeroSuction {
   void validate(int dim) const { check::region(region, dim); }
 };
 
+/// Rain on the current ground and on free water, straight down (against the last axis). Per column of
+/// cells the soil drinks up to what it can take at p = 0; what is left stays on the ground as a film
+/// and becomes points of free water, which pond and run off, as soon as it fills half a cell. Under
+/// rain no water is drawn in without supply, and water that seeps out joins the film. Give `rate` or
+/// `function`. Evaporation has no model: negative rates are refused, and from a function read as 0.
+struct Rain {
+  static constexpr const char* name = "bc::Rain";
+  Real rate = unset;                        ///< r [m/s] per horizontal area, >= 0
+  std::function<Real(Real)> function = {};  ///< r(t [s]) [m/s]
+  AnyRegion region = {};                    ///< part of the ground; all of it by default
+
+  void validate(int dim) const {
+    check::exactly_one(int(rate == rate) + int(static_cast<bool>(function)), "rate, function",
+                       "m/s");
+    if (function)
+      check::non_negative("function(0 s)", function(0), "m/s");
+    else
+      check::non_negative("rate", rate, "m/s");
+    check::region(region, dim);
+  }
+  /// Rate [m/s] at time t [s].
+  Real at(Real t) const { return function ? function(t) : rate; }
+};
+
 }  // namespace bc
 }  // namespace vadose

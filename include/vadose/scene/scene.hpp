@@ -182,7 +182,7 @@ class Scene {
   const std::vector<Condition>& conditions() const noexcept {
     static_assert(
         detail::is_one_of<std::vector<Condition>, Fixed, Roller, Frictional, Traction,
-                          PrescribedVelocity, Impermeable, PrescribedPressure, ZeroSuction>,
+                          PrescribedVelocity, Impermeable, PrescribedPressure, ZeroSuction, Rain>,
         "vadose: Scene::conditions takes a stored condition of vadose::bc");
     return std::get<std::vector<Condition>>(conditions_);
   }
@@ -221,17 +221,18 @@ class Scene {
   using Impermeable = std::vector<bc::Impermeable>;
   using PrescribedPressure = std::vector<bc::PrescribedPressure<dim>>;
   using ZeroSuction = std::vector<bc::ZeroSuction>;
+  using Rain = std::vector<bc::Rain>;
 
   template <class C>
   static constexpr bool is_wall = detail::is_one_of<C, bc::Fixed, bc::Roller, bc::Frictional>;
   template <class C>
   static constexpr bool acts_on_liquid =
       detail::is_one_of<C, bc::Impermeable, bc::PrescribedPressure<dim>, bc::Drained,
-                        bc::ZeroSuction>;
+                        bc::ZeroSuction, bc::Rain>;
   template <class C>
   static constexpr bool acts_on_skeleton =
       detail::is_one_of<C, bc::Frictional, bc::Traction<dim>, bc::PrescribedVelocity<dim>,
-                        bc::ZeroSuction>;
+                        bc::ZeroSuction, bc::Rain>;
   template <class C>
   static constexpr bool is_known = is_wall<C> || acts_on_liquid<C> || acts_on_skeleton<C>;
 
@@ -361,6 +362,9 @@ class Scene {
     } else if constexpr (requires { condition.face; }) {
       refuse_conflict<Impermeable>(condition);
       refuse_conflict<PrescribedPressure>(condition);
+    } else if constexpr (detail::is_one_of<Condition, bc::ZeroSuction, bc::Rain>) {
+      refuse_second_surface<ZeroSuction>(condition);
+      refuse_second_surface<Rain>(condition);
     }
     std::get<std::vector<Condition>>(conditions_).push_back(condition);
   }
@@ -373,6 +377,16 @@ class Scene {
       if (other.face == added.face && !limited(other))
         throw SetupError("face = " + std::string(name(added.face)) + " outside {free faces} [-]: " +
                          added.name + " contradicts " + other.name + " there; give one a region");
+  }
+  /// So do two conditions for the whole ground surface.
+  template <class List, class Condition>
+  void refuse_second_surface(const Condition& added) const {
+    if (limited(added)) return;
+    for (const auto& other : std::get<List>(conditions_))
+      if (!limited(other))
+        throw SetupError(
+            "region = (everywhere) outside {parts of the surface} [m]: " + std::string(added.name) +
+            " contradicts " + other.name + " there; give one a region");
   }
   template <class Condition>
   static bool limited(const Condition& condition) {
@@ -420,7 +434,7 @@ class Scene {
   std::vector<WaterBody<dim>> waters_;
   std::vector<Material<M>> materials_;
   std::tuple<Fixed, Roller, Frictional, Traction, PrescribedVelocity, Impermeable,
-             PrescribedPressure, ZeroSuction>
+             PrescribedPressure, ZeroSuction, Rain>
       conditions_;
 };
 

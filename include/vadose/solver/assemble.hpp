@@ -150,6 +150,13 @@ HeldPressure<M::Kinematics::dim> held_pressure(const bc::ZeroSuction& c) {
   return h;
 }
 
+template <class M>
+HeldPressure<M::Kinematics::dim> held_pressure(const bc::Rain& c) {
+  HeldPressure<M::Kinematics::dim> h = held_pressure<M>(bc::ZeroSuction{.region = c.region});
+  h.supply = [c](Real t) { return c.at(t); };
+  return h;
+}
+
 /// Axis along which a box is thinnest.
 template <int Dim>
 int thinnest_axis(const Box<Dim>& box) {
@@ -227,6 +234,10 @@ void assemble(State<M>& state, const Scene<M>& scene) {
     if constexpr (has_skeleton<M>)
       for (const auto& c : scene.template conditions<bc::ZeroSuction>())
         state.held.push_back(held_pressure<M>(c));
+    if constexpr (has_skeleton<M>)
+      for (const auto& c : scene.template conditions<bc::Rain>())
+        state.held.push_back(held_pressure<M>(c));
+    state.next_liquid_id = next_liquid;
   }
   if constexpr (is_deformable<M>)
     for (const auto& t : scene.template conditions<bc::Traction<dim>>())

@@ -55,17 +55,21 @@ class InstabilityError : public std::runtime_error {
 /// Water of a run [kg] (per metre in plane strain, per radian, per square metre in 1D).
 struct WaterBalance {
   Real initial = 0;  ///< at the start
+  Real rain = 0;     ///< fallen on the ground
   Real inflow = 0;   ///< through held pressures
   Real outflow = 0;  ///< through held pressures
   Real pore = 0;     ///< stored as pore water now
   Real free = 0;     ///< stored as free water now
+  Real film = 0;     ///< on the ground, not points yet
   Real lost = 0;     ///< left with points that left the box
 
   /// Stored now less what must be there [kg].
-  Real closure() const noexcept { return pore + free - (initial + inflow - outflow - lost); }
+  Real closure() const noexcept {
+    return pore + free + film - (initial + rain + inflow - outflow - lost);
+  }
   /// Closure over the largest quantity in the balance [-].
   Real relative_closure() const noexcept {
-    const Real scale = max(max(initial, inflow), max(outflow, pore + free));
+    const Real scale = max(max(initial, max(rain, inflow)), max(outflow, pore + free + film));
     return scale > 0 ? closure() / scale : 0;
   }
 };

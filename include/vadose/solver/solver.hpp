@@ -9,6 +9,7 @@
 #include <vector>
 
 #include <vadose/solver/assemble.hpp>
+#include <vadose/solver/release_films.hpp>
 #include <vadose/solver/report.hpp>
 #include <vadose/solver/scheme.hpp>
 #include <vadose/solver/walls.hpp>
@@ -108,8 +109,8 @@ class Solver {
   const auto& solid() const noexcept { return state_.solid; }    ///< solid points
   const auto& liquid() const noexcept { return state_.liquid; }  ///< liquid points
 
-  /// Adds a condition on the liquid that opens now: bc::ZeroSuction, bc::PrescribedPressure,
-  /// bc::Drained.
+  /// Adds a condition on the liquid that opens now: bc::ZeroSuction, bc::Rain,
+  /// bc::PrescribedPressure, bc::Drained. At the ground the condition added first counts.
   template <class Condition>
   void add(const Condition& condition) {
     check::in_context(Condition::name, [&] { condition.validate(dim); });
@@ -136,6 +137,7 @@ class Solver {
     }
     report.trouble = state_.trouble;
     state_.slack += state_.dt * std::sqrt(speed2);
+    if constexpr (has_liquid<M> && has_skeleton<M>) detail::release_films(state_);
     last_ = report;
     return report;
   }
@@ -193,6 +195,8 @@ class Solver {
       b.inflow += h.inflow;
       b.outflow += h.outflow;
     }
+    b.rain = state_.rain;
+    for (const auto& column : state_.columns) b.film += column.film;
     sum_water(b.pore, b.free);
     return b;
   }
@@ -240,6 +244,7 @@ class Solver {
   /// Restarts the water count: what is stored now becomes `initial`.
   void reset_balances() {
     for (auto& h : state_.held) h.inflow = h.outflow = 0;
+    state_.rain = 0;
     count_initial();
   }
 
@@ -337,6 +342,7 @@ class Solver {
   void count_initial() {
     Real pore = 0, free = 0;
     sum_water(pore, free);
+    for (const auto& column : state_.columns) free += column.film;
     initial_water_ = pore + free;
     initial_solid_ = solid_balance().stored;
   }
@@ -345,6 +351,11 @@ class Solver {
       state_.liquid.for_each([&](std::size_t b, int l) {
         (state_.liquid.group(b) == state_.free_group() ? free : pore) +=
             state_.liquid.at(field::mass, b)[l];
+      });
+    if constexpr (has_liquid<M>)
+      state_.liquid.for_each_new([&](const double* p, int group) {
+        (group == state_.free_group() ? free : pore) +=
+            p[State<M>::Liquid::fields::template offset<field::Mass>()];
       });
   }
 

@@ -1,0 +1,123 @@
+// SPDX-License-Identifier: MIT
+// Rain of a rate: what enters, what stands on the ground, what the ledger says.
+
+#include <doctest/doctest.h>
+
+#include <cmath>
+
+#include <vadose/solver/solver.hpp>
+
+namespace {
+
+namespace vd = vadose;
+using vd::Real;
+using vd::Vec;
+
+template <class K>
+struct Seepage : vd::UnsaturatedModel<K> {
+  using Skeleton = vd::law::Rigid;
+};
+using Column = Seepage<vd::Uniaxial>;
+using Strip = Seepage<vd::PlaneStrain>;
+
+constexpr Real conductivity = 1e-4, porosity = 0.4;
+
+/// Sand at S = 0.3 up to `height` [m], softened water, rain as given.
+template <class M>
+vd::Solver<M> rained(Real height, const vd::bc::Rain& rain, Real saturation = 0.3) {
+  constexpr int dim = M::Kinematics::dim, up = dim - 1;
+  Vec<dim> low = Vec<dim>::Zero(), high = Vec<dim>::Constant(0.3), top;
+  high[up] = 1.2;
+  top = high;
+  top[up] = height;
+  vd::Scene<M> scene({.box = {low, high}, .cell_size = 0.1});
+  scene.gravity[up] = -9.81;
+  scene.liquid.bulk_modulus = 1e6;
+  scene.add_soil(
+      vd::box(low, top),
+      {.name = "sand",
+       .porosity = porosity,
+       .lambda = 0.63,
+       .retention = {.a = 3, .porosity_dependent = false},
+       .conductivity = {.saturated_conductivity = conductivity, .porosity_dependent = false}},
+      {.saturation = saturation});
+  scene.add(rain);
+  return vd::Solver<M>(scene);
+}
+
+/// Water that a column took in [m].
+template <class M>
+Real taken(const vd::WaterBalance& w) {
+  return (w.pore - w.initial) / 1000 / (M::Kinematics::dim == 1 ? 1 : 0.3);
+}
+
+void check_closed(const vd::WaterBalance& w) {
+  CHECK(std::fabs(w.relative_closure()) <= 1e-12);
+}
+
+}  // namespace
+
+TEST_CASE("rain below capacity enters at once and whole") {
+  auto column = rained<Column>(1, {.rate = 0.3 * conductivity});
+  auto strip = rained<Strip>(1, {.rate = 0.3 * conductivity});
+  column.advance_to(100);
+  strip.advance_to(20);
+  const auto w = column.water_balance(), w2 = strip.water_balance();
+  CHECK(w.rain == doctest::Approx(1000 * 0.3 * conductivity * 100).epsilon(1e-12));
+  CHECK(taken<Column>(w) == doctest::Approx(0.3 * conductivity * 100).epsilon(1e-9));
+  CHECK(taken<Strip>(w2) == doctest::Approx(0.3 * conductivity * 20).epsilon(1e-9));
+  CHECK(w.free == 0);
+  CHECK(std::fabs(w.film) <= 1e-12);
+  CHECK(w.inflow == 0);
+  check_closed(w);
+  check_closed(w2);
+}
+
+TEST_CASE("rain above capacity stands on the ground: film, then free water; all of it counted") {
+  auto solver = rained<Column>(0.5, {.rate = 20 * conductivity});
+  solver.advance_to(15);
+  auto w = solver.water_balance();
+  CHECK(w.film > 0);
+  CHECK(w.pore > w.initial);
+  CHECK(taken<Column>(w) < 0.9 * 20 * conductivity * 15);
+  check_closed(w);
+  solver.advance_to(60);  // 0.12 m of rain on 0.5 m of soil that has room for 0.14 m
+  w = solver.water_balance();
+  CHECK(w.free > 0);
+  CHECK(w.film < 50);  // never half a cell
+  MESSAGE("rain ", w.rain, " kg/m2, pore ", w.pore - w.initial, ", free ", w.free, ", film ",
+          w.film, ", closure ", w.relative_closure());
+  check_closed(w);
+}
+
+TEST_CASE("rain can stop, and its film soaks in") {
+  auto solver =
+      rained<Column>(0.5, {.function = [](Real t) { return t < 10 ? 20 * conductivity : 0.0; }});
+  solver.advance_to(10);
+  const Real film = solver.water_balance().film;
+  CHECK(film > 0);
+  solver.advance_to(200);
+  const auto w = solver.water_balance();
+  CHECK(w.rain == doctest::Approx(20).epsilon(1e-3));
+  CHECK(w.film < 0.01 * film);
+  CHECK(w.free == 0);
+  check_closed(w);
+}
+
+TEST_CASE("without rain a surface under suction takes no water") {
+  auto solver = rained<Strip>(0.5, {.rate = 0});
+  solver.advance_to(1);
+  const auto w = solver.water_balance();
+  CHECK(w.rain == 0);
+  CHECK(w.film == 0);
+  CHECK(w.pore == doctest::Approx(w.initial).epsilon(1e-13));
+}
+
+TEST_CASE("rain is refused where it makes no sense") {
+  CHECK_THROWS_AS(rained<Column>(1, {}), vd::SetupError);
+  CHECK_THROWS_AS(rained<Column>(1, {.rate = -1e-6}), vd::SetupError);
+  vd::Scene<Column> scene({.box = {Vec<1>(0.0), Vec<1>(1.0)}, .cell_size = 0.1});
+  scene.add(vd::bc::Rain{.rate = 1e-6});
+  CHECK_THROWS_WITH_AS(scene.add(vd::bc::ZeroSuction{}),
+                       doctest::Contains("bc::ZeroSuction contradicts bc::Rain"), vd::SetupError);
+}
