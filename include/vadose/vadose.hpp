@@ -9,6 +9,7 @@
 #define VADOSE_VERSION_PATCH 0
 
 #include <vadose/core/aligned.hpp>
+#include <vadose/core/compensated_sum.hpp>
 #include <vadose/core/error.hpp>
 #include <vadose/core/field.hpp>
 #include <vadose/core/kinematics.hpp>

@@ -79,15 +79,18 @@ Scene<M> unit_scene() {
 template <class M>
 std::size_t count(const Scene<M>& s) {
   return s.soils().size() + 100 * s.materials().size() + 10000 * s.waters().size() +
-         1000000 * (s.template conditions<bc::Fixed>().size() +
-                    s.template conditions<bc::Roller>().size() +
-                    s.template conditions<bc::Frictional>().size() +
-                    s.template conditions<bc::Traction<M::Kinematics::dim>>().size() +
-                    s.template conditions<bc::PrescribedVelocity<M::Kinematics::dim>>().size() +
-                    s.template conditions<bc::Impermeable>().size() +
-                    s.template conditions<bc::PrescribedPressure<M::Kinematics::dim>>().size() +
-                    s.template conditions<bc::ZeroSuction>().size() +
-                    s.template conditions<bc::Rain>().size());
+         1000000 *
+             (s.template conditions<bc::Fixed>().size() +
+              s.template conditions<bc::Roller>().size() +
+              s.template conditions<bc::Frictional>().size() +
+              s.template conditions<bc::Traction<M::Kinematics::dim>>().size() +
+              s.template conditions<bc::PrescribedVelocity<M::Kinematics::dim>>().size() +
+              s.template conditions<bc::Impermeable>().size() +
+              s.template conditions<bc::PrescribedPressure<M::Kinematics::dim>>().size() +
+              s.template conditions<bc::ZeroSuction>().size() +
+              s.template conditions<bc::PrescribedHead>().size() +
+              s.template conditions<bc::Reservoir>().size() +
+              s.template conditions<bc::Drain>().size() + s.template conditions<bc::Rain>().size());
 }
 
 /// A wrong set-up and what its message must contain.

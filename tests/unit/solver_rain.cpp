@@ -113,9 +113,38 @@ TEST_CASE("without rain a surface under suction takes no water") {
   CHECK(w.pore == doctest::Approx(w.initial).epsilon(1e-13));
 }
 
+TEST_CASE("a film runs down a slope at Manning's depth, and collects at the toe") {
+  // Nearly tight ground: what falls runs off.
+  vd::Scene<Strip> scene({.box = {{0.0, 0.0}, {2.0, 1.2}}, .cell_size = 0.1});
+  scene.gravity = {0, -9.81};
+  scene.liquid.bulk_modulus = 1e6;
+  scene.add_soil(vd::polygon({{0, 0}, {2, 0}, {2, 0.2}, {1.6, 0.2}, {0, 1}}),
+                 {.name = "clay",
+                  .porosity = porosity,
+                  .lambda = 0.63,
+                  .retention = {.a = 3, .porosity_dependent = false},
+                  .conductivity = {.saturated_conductivity = 1e-9, .porosity_dependent = false}},
+                 {.saturation = 0.9});
+  const Real rate = 1e-3, roughness = 0.1;
+  scene.add(vd::bc::Rain{.rate = rate, .roughness = roughness});
+  vd::Solver<Strip> solver(scene);
+  solver.advance_to(8);
+  const auto w = solver.water_balance();
+  check_closed(w);
+  CHECK(w.rain == doctest::Approx(1000 * rate * 2 * 8).epsilon(1e-12));
+  // Steady sheet flow at x = 1.25: q = r x = d^(5/3) sqrt(0.5) / n.
+  const Real depth = std::pow(rate * 1.25 * roughness / std::sqrt(0.5), 0.6);
+  Real film = 0;  // the mean over the staircase of cells
+  for (std::size_t c = 11; c < 14; ++c) film += solver.state().columns[c].film / 3;
+  MESSAGE("film ", film / 100, " m, Manning ", depth, "; at the toe ", w.free, " kg free");
+  CHECK(film / 100 == doctest::Approx(depth).epsilon(0.1));
+  CHECK(w.free + w.film > 0.95 * w.rain);
+}
+
 TEST_CASE("rain is refused where it makes no sense") {
   CHECK_THROWS_AS(rained<Column>(1, {}), vd::SetupError);
   CHECK_THROWS_AS(rained<Column>(1, {.rate = -1e-6}), vd::SetupError);
+  CHECK_THROWS_AS(rained<Column>(1, {.rate = 1e-6, .roughness = 0}), vd::SetupError);
   vd::Scene<Column> scene({.box = {Vec<1>(0.0), Vec<1>(1.0)}, .cell_size = 0.1});
   scene.add(vd::bc::Rain{.rate = 1e-6});
   CHECK_THROWS_WITH_AS(scene.add(vd::bc::ZeroSuction{}),

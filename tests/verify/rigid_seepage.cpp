@@ -93,7 +93,7 @@ TEST_CASE("rigid skeleton: hydrostatic rest") {
     }
 }
 
-// Richards' equation by finite volumes: 0.0788, 0.1602, 0.2637 m at 300, 900, 1800 s.
+// Richards' equation by finite volumes: 0.0777, 0.1590, 0.2623 m at 300, 900, 1800 s (tests/reference/richards.py).
 namespace {
 
 struct Inflows {
@@ -108,23 +108,24 @@ const Inflows& inflows() {
 }  // namespace
 
 TEST_CASE("rigid skeleton: infiltration into sand against Richards' equation, 300 s") {
-  MESSAGE("first order in h: extrapolated ", 2 * inflows().fine - inflows().coarse, " m");
-  CHECK(verify::close(inflows().fine, 0.0788, 0.06));
-  CHECK(verify::close(2 * inflows().fine - inflows().coarse, 0.0788, 0.03));
+  const Real order = std::log2((inflows().coarse / 0.0777 - 1) / (inflows().fine / 0.0777 - 1));
+  MESSAGE("errors ", inflows().coarse / 0.0777 - 1, ", ", inflows().fine / 0.0777 - 1, ": order ",
+          order);
+  CHECK(verify::close(inflows().fine, 0.0777, 0.04));
+  CHECK(order > 1.3);
 }
-// Measured -5.0 % at h = 0.05 m; the error falls with h to the first order.
+// Measured -3.6 % at h = 0.05 m; the error falls with the order 1.6.
 TEST_CASE("known miss: infiltration within 2 % after 300 s" * doctest::may_fail()) {
-  CHECK(verify::close(inflows().fine, 0.0788, 0.02));
-  CHECK(verify::close(2 * inflows().fine - inflows().coarse, 0.0788, 0.02));
+  CHECK(verify::close(inflows().fine, 0.0777, 0.02));
 }
 
 TEST_SUITE("long") {
   TEST_CASE("rigid skeleton: infiltration into sand against Richards' equation" *
             doctest::may_fail()) {  // see the known miss above
     const auto inflow = infiltrate(0.05, 1e6, {300, 900, 1800});
-    CHECK(verify::close(inflow[0], 0.0788, 0.02));
-    CHECK(verify::close(inflow[1], 0.1602, 0.02));
-    CHECK(verify::close(inflow[2], 0.2637, 0.02));
-    CHECK(verify::close(infiltrate(0.025, 1e6, {300}).front(), 0.0788, 0.02));
+    CHECK(verify::close(inflow[0], 0.0777, 0.02));
+    CHECK(verify::close(inflow[1], 0.1590, 0.02));
+    CHECK(verify::close(inflow[2], 0.2623, 0.02));
+    CHECK(verify::close(infiltrate(0.025, 1e6, {300}).front(), 0.0777, 0.02));
   }
 }

@@ -101,54 +101,64 @@ Vec<State<M>::dim> face_centre(const CellView<M>& view, int axis) {
 /// Index of the held pressure at a wall (axis, side) or at the surface (axis -1); -1: none.
 template <class M>
 std::int16_t find_held(const State<M>& state, int axis, int side, const Vec<State<M>::dim>& x) {
-  for (std::size_t i = 0; i < state.held.size(); ++i) {
-    const auto& held = state.held[i];
-    if (held.face_axis == axis && (axis < 0 || held.face_side == side) && held.contains(x))
-      return static_cast<std::int16_t>(i);
-  }
+  for (std::size_t i = 0; i < state.held.size(); ++i)
+    if (state.held[i].is_at(axis, side, x))
+      return state.held[i].kind == HeldKind::closed ? std::int16_t{-1}
+                                                    : static_cast<std::int16_t>(i);
   return -1;
 }
 
-/// Ground under rain. The soil could take k H / gamma at p = 0; given less than that it drinks all of
-/// it and its surface stays under suction, closed to the nodes; given more it is held at p = 0.
+/// Ground under rain. The soil could take k H / gamma at the pressure of the film; given less than
+/// that it drinks all of it and its surface stays under suction, closed to the nodes; given more it
+/// is held at that pressure.
 template <class M>
-void rained_face(const State<M>& state, const CellView<M>& view, int axis,
-                 const Cell<State<M>::dim>& soil, FaceFlux& face) {
-  const bool upward = axis == State<M>::dim - 1 && face.soil_below;
+void rained_face(const State<M>& state, const Cell<State<M>::dim>& soil,
+                 const RainColumn<State<M>::dim>* column, FaceFlux& face) {
   const Real inward = face.soil_below ? face.head_gradient : -face.head_gradient;
   face.fed = true;
   face.supply = 0;
-  if (upward) {
-    const std::int32_t below = view.neighbour(axis, -1);
-    const auto& column = state.columns[column_of(state.grid, view.cell)];
-    if (column.top == below)
-      face.supply =
-          rain_on(state, column) + max(0.0, column.film) / (state.water.density * state.dt);
-  }
+  if (column)
+    face.supply =
+        rain_on(state, *column) + max(0.0, column->film) / (state.water.density * state.dt);
   const Real potential = face.area * face.conductivity * max(0.0, inward) /
                          state.soils[soil.material].material.unit_weight;
   face.thirsty = inward >= 0 && face.supply <= potential;
+}
+
+/// Face at a held pressure, at the given point of a wall or of the ground.
+template <class M>
+void held_face(const State<M>& state, const CellView<M>& view, int axis,
+               const Cell<State<M>::dim>& soil, const Real (&at)[State<M>::dim], FaceFlux& face) {
+  const auto& held = state.held[static_cast<std::size_t>(face.held)];
+  Vec<State<M>::dim> x;
+  for (int d = 0; d < State<M>::dim; ++d) x[d] = at[d];
+  Real p = held.pressure(x, state.time);
+  const bool dry = held.kind == HeldKind::reservoir && p <= 0;
+  if (dry) p = 0;
+  const RainColumn<State<M>::dim>* column = nullptr;
+  if (held.kind == HeldKind::rain) column = column_above(state, view, axis, face.soil_below);
+  if (column) p = film_pressure(state, *column);
+  outer_face(state, axis, soil, at, p, face);
+  if (held.kind == HeldKind::rain) rained_face(state, soil, column, face);
+  if (dry || held.kind == HeldKind::outlet)
+    face.thirsty = (face.soil_below ? face.head_gradient : -face.head_gradient) >= 0;
 }
 
 /// Face between soil and air: open if a pressure is held at the surface there, else closed.
 template <class M>
 void surface_face(const State<M>& state, const CellView<M>& view, int axis,
                   const Cell<State<M>::dim>& soil, FaceFlux& face) {
-  const Vec<State<M>::dim> centre = face_centre(view, axis);
   face.kind = FaceKind::surface;
   face.held_pressure = 0;
   face.saturation = soil.saturation;
   face.conductivity = soil.conductivity;
-  face.held = find_held(state, -1, 0, centre);
+  face.held = find_held(state, -1, 0, face_centre(view, axis));
   if (face.held < 0) return;
   const Real h = state.grid.cell_size();
   Real at[State<M>::dim];
   for (int d = 0; d < State<M>::dim; ++d) at[d] = soil.centroid[d];
   at[axis] += (face.soil_below ? 0.5 : -0.5) * min(1.5, soil.fill) * h;
-  const Real p = state.held[static_cast<std::size_t>(face.held)].pressure(centre, state.time);
-  outer_face(state, axis, soil, at, p, face);
-  if (state.held[static_cast<std::size_t>(face.held)].supply)
-    rained_face(state, view, axis, soil, face);
+  held_face(state, view, axis, soil, at, face);
 }
 
 /// Face between soil and a wall.
@@ -163,8 +173,7 @@ void wall_face(const State<M>& state, const CellView<M>& view, int axis, int sid
   Real at[State<M>::dim];
   for (int d = 0; d < State<M>::dim; ++d) at[d] = soil.centroid[d];
   at[axis] = centre[axis];
-  const Real p = state.held[static_cast<std::size_t>(held)].pressure(centre, state.time);
-  outer_face(state, axis, soil, at, p, face);
+  held_face(state, view, axis, soil, at, face);
 }
 
 /// Face between soil and free water.

@@ -110,7 +110,7 @@ struct FaceFlux {
   std::int16_t held = -1;   ///< which HeldPressure; -1: a surface that lets no water through
   bool fed = false;         ///< rain or its film feeds the surface and takes what comes out
   bool thirsty = false;     ///< the soil drinks all it is given: its surface stays under suction
-  Real supply = 0;          ///< of a fed face: what it can take at most [m3/s]
+  Real supply = 0;          ///< what a fed or thirsty face can take at most [m3/s]
   bool soil_below = false;  ///< of a surface or to_free face: the soil is on the lower side
 };
 

@@ -3,7 +3,7 @@
 
 /// \file
 /// Rain on the current ground: what each column of cells catches, what enters the soil, and the film
-/// of water that stays on the ground until it is thick enough to be points of free water.
+/// of water on the ground, which runs down slopes until it is thick enough to be points of free water.
 
 #include <vadose/kernel/pressure.hpp>
 
@@ -74,8 +74,25 @@ Real rain_on(const State<M>& state, const RainColumn<State<M>::dim>& column) {
     x[d] = state.grid.origin()[d] + (column.top_cell[d] + 0.5) * state.grid.cell_size();
   x[dim - 1] = surface_height(state, column);
   for (const auto& held : state.held)
-    if (held.supply && held.contains(x)) return held.supply_rate * column.area;
+    if (held.supply && held.acts && held.contains(x)) return held.supply_rate * column.area;
   return 0;
+}
+
+/// Pressure of the film of a column at its foot [Pa].
+template <class M>
+Real film_pressure(const State<M>& state, const RainColumn<State<M>::dim>& column) noexcept {
+  return column.area > 0
+             ? max(0.0, column.film) / column.area * std::fabs(state.gravity[State<M>::dim - 1])
+             : 0;
+}
+
+/// The column whose rain falls on the soil below a face; nullptr where none does.
+template <class M>
+const RainColumn<State<M>::dim>* column_above(const State<M>& state, const CellView<M>& view,
+                                              int axis, bool soil_below) noexcept {
+  if (axis != State<M>::dim - 1 || !soil_below) return nullptr;
+  const auto& column = state.columns[column_of(state.grid, view.cell)];
+  return column.top == view.neighbour(axis, -1) ? &column : nullptr;
 }
 
 /// Column that lies on the air side of an open face, where water that comes out of the soil goes.
@@ -87,6 +104,57 @@ std::size_t column_outside(const State<M>& state, const CellView<M>& view, int a
   return column_of(state.grid, cell);
 }
 
+/// Mean height of the ground or of free water in a column [m]: a slope may cut its two highest cells.
+template <class M>
+Real mean_height(const State<M>& state, const RainColumn<State<M>::dim>& column) noexcept {
+  constexpr int up = State<M>::dim - 1;
+  Real height = surface_height(state, column);
+  if (column.top_cell[up] == 0) return height;
+  Index<State<M>::dim> below = column.top_cell;
+  --below[up];
+  const auto e = static_cast<std::size_t>(state.grid.entry(below));
+  return height - (1 - min(1.0, state.nodes.cell[e].raw_fill)) * state.grid.cell_size();
+}
+
+/// Mass [kg] that a film passes to the next column in a step: sheet flow by Manning,
+/// q = d^(5/3) sqrt(drop / h) / roughness down the fall of the water surface; at most a quarter of
+/// what there is, and no more than levels the two.
+template <class M>
+Real sheet_flow(const State<M>& state, const RainColumn<State<M>::dim>& from,
+                const RainColumn<State<M>::dim>& to) noexcept {
+  const Real h = state.grid.cell_size(), density = state.water.density;
+  const Real depth = from.film / (density * from.area);
+  const Real drop = mean_height(state, from) + depth - mean_height(state, to) -
+                    max(0.0, to.film) / (density * to.area);
+  if (!(drop > 0)) return 0;
+  const Real width = 0.5 * (from.area + to.area) / h;
+  const Real rate =
+      depth * std::cbrt(depth * depth) * std::sqrt(drop / h) / state.roughness * width;
+  const Real level = 0.25 * drop * min(from.area, to.area);
+  return min(0.25 * from.film, density * min(rate * state.dt, level));
+}
+
+/// Films run down the slope, column by column. What one loses the other gets.
+template <class M>
+void route_films(State<M>& state) {
+  constexpr int up = State<M>::dim - 1;
+  std::size_t stride = 1;
+  for (int d = 0; d < up; ++d) {
+    const auto cells = static_cast<std::size_t>(state.grid.cells()[d]);
+    for (std::size_t c = 0; c < state.columns.size(); ++c) {
+      if ((c / stride) % cells + 1 == cells) continue;
+      auto& a = state.columns[c];
+      auto& b = state.columns[c + stride];
+      if (a.top < 0 || b.top < 0 || !(a.film > 0 || b.film > 0)) continue;
+      Real dm = a.film > 0 ? sheet_flow(state, a, b) : 0;
+      if (dm == 0 && b.film > 0) dm = -sheet_flow(state, b, a);
+      a.film -= dm;
+      b.film += dm;
+    }
+    stride *= cells;
+  }
+}
+
 /// After the fluxes: rain falls on the films, soil drinks from them and springs feed them. The same
 /// products as in the gains of the cells, so that the ledger closes to round-off.
 template <class M>
@@ -96,8 +164,9 @@ void settle_films(State<M>& state) {
   const Real mass_per_flux = state.dt * state.water.density;
   for (auto& column : state.columns) {
     const Real fallen = mass_per_flux * rain_on(state, column);
+    const Real before = column.film;
     column.film += fallen;
-    state.rain += fallen;
+    state.rain += column.film - before;  // what was added, after rounding
   }
   for_cells(state.grid, 1, [&](std::int32_t e, const Index<dim>& local, int slot, int) {
     const CellView<M> view(state, local, slot);
@@ -112,6 +181,7 @@ void settle_films(State<M>& state) {
       state.columns[column_outside(state, view, d, face)].film -= mass_per_flux * limit * into;
     }
   });
+  route_films(state);
 }
 
 }  // namespace vadose::kernel

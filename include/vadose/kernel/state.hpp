@@ -11,6 +11,7 @@
 #include <string>
 #include <vector>
 
+#include <vadose/core/compensated_sum.hpp>
 #include <vadose/grid/point_set.hpp>
 #include <vadose/kernel/grid_state.hpp>
 #include <vadose/kernel/tile.hpp>
@@ -73,18 +74,36 @@ struct SpecialNode {
   Real friction = 0;        ///< coefficient [-]
 };
 
+/// How water passes a wall or the ground surface where a condition acts.
+enum class HeldKind : std::uint8_t {
+  open,       ///< both ways at the held pressure
+  rain,       ///< in at p <= 0 as supplied, out at p = 0
+  outlet,     ///< out only, at the held pressure
+  reservoir,  ///< both ways where its pressure is positive, else out only at p = 0
+  closed,     ///< not at all
+};
+
 /// Where the liquid meets something at a held pressure: a wall, or the ground surface.
 template <int Dim>
 struct HeldPressure {
   int face_axis = -1;  ///< wall normal; -1: the ground surface
   int face_side = 0;
+  HeldKind kind = HeldKind::open;
+  bool limited = false;                                 ///< to a region
+  bool acts = true;                                     ///< at the present time
+  std::function<bool(Real)> active = {};                ///< at time t [s]; empty: always
   std::function<bool(const Vec<Dim>&)> contains;        ///< part of it
   std::function<Real(const Vec<Dim>&, Real)> pressure;  ///< p(x, t) [Pa]
   /// Water offered at the ground surface [m/s per horizontal area] at time t [s]; empty: no limit.
   std::function<Real(Real)> supply = {};
-  Real supply_rate = 0;  ///< the same at the present time [m/s]
-  Real inflow = 0;       ///< water taken in so far [kg]
-  Real outflow = 0;      ///< water let out so far [kg]
+  Real supply_rate = 0;    ///< the same at the present time [m/s]
+  CompensatedSum inflow;   ///< water taken in so far [kg]
+  CompensatedSum outflow;  ///< water let out so far [kg]
+
+  /// Whether it is at a place: a wall of this axis and side, or the ground (axis -1).
+  bool is_at(int axis, int side, const Vec<Dim>& x) const {
+    return acts && face_axis == axis && (axis < 0 || face_side == side) && contains(x);
+  }
 };
 
 /// A vertical column of cells under rain.
@@ -166,7 +185,8 @@ struct State {
   std::vector<SpecialNode<dim>> special;           ///< in ascending order of entry
   std::vector<HeldPressure<dim>> held;
   std::vector<RainColumn<dim>> columns;  ///< under rain; empty without
-  Real rain = 0;                         ///< fallen so far [kg]
+  Real roughness = 0.03;                 ///< Manning's, of the ground [s/m^(1/3)]
+  CompensatedSum rain;                   ///< fallen so far [kg]
   std::int64_t next_liquid_id = 0;       ///< of the next liquid point
 
   AlignedVector<kernel::Tile<dim>> tiles;  ///< two per thread

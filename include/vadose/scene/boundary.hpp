@@ -81,6 +81,9 @@ class AnyRegion {
 /// Factor [-] as a function of time [s]; an empty one is 1 at all times.
 using TimeFactor = std::function<Real(Real)>;
 
+/// Whether a condition acts at time t [s]; an empty one acts at all times.
+using TimeSwitch = std::function<bool(Real)>;
+
 namespace check {
 
 /// The face exists in `dim` dimensions.
@@ -114,6 +117,20 @@ inline void exactly_one(int given, std::string_view alternatives, std::string_vi
   if (given != 1)
     fail("number of given " + std::string(alternatives) + " (units " + std::string(unit) + ")",
          given, "{1}", "-");
+}
+
+/// A face, a region, or both.
+inline void face_or_region(Face given, const AnyRegion& part, int dim) {
+  if (given == unset_face && !part.given())
+    throw SetupError("face = (missing), region = (missing), allowed: one or both [m]");
+  if (given != unset_face) face(given, dim);
+  region(part, dim);
+}
+
+/// A face, a region, both, or neither (the whole ground surface).
+inline void wall_or_ground(Face given, const AnyRegion& part, int dim) {
+  if (given != unset_face) face(given, dim);
+  region(part, dim);
 }
 
 /// One or none of several alternatives was given.
@@ -217,13 +234,25 @@ struct PrescribedVelocity {
   Real factor(Real t) const { return time_factor ? time_factor(t) : 1; }
 };
 
-/// No liquid flows through the face. This is what every face does without a liquid condition; it
-/// can be written to say so.
+// Where a liquid condition acts: with `face`, on that wall; without, on the current ground surface,
+// found from the points in every step. `region` limits it to a part, by position. Where several meet,
+// those with a region go first, then those added first. `active` switches a condition in time; while
+// it is off the next one counts.
+
+/// No liquid flows through the face. This is what every wall and the ground do without a liquid
+/// condition; with a region it closes a part of what another condition opens.
 struct Impermeable {
   static constexpr const char* name = "bc::Impermeable";
   Face face = unset_face;  ///< side of the domain
+  AnyRegion region = {};   ///< or region
+  TimeSwitch active = {};  ///< when; always by default
 
-  void validate(int dim) const { check::face(face, dim); }
+  void validate(int dim) const {
+    if (region.given())
+      check::face_or_region(face, region, dim);
+    else
+      check::face(face, dim);
+  }
 };
 
 /// Liquid pressure held at a face, at a region, or at the part of a face that is in the region.
@@ -235,12 +264,10 @@ struct PrescribedPressure {
   AnyRegion region = {};                                     ///< or region
   Real pressure = unset;                                     ///< p [Pa], compression +
   std::function<Real(const Vec<Dim>&, Real)> function = {};  ///< p(x [m], t [s]) [Pa]
+  TimeSwitch active = {};                                    ///< when; always by default
 
   void validate(int dim) const {
-    if (face == unset_face && !region.given())
-      throw SetupError("face = (missing), region = (missing), allowed: one or both [m]");
-    if (face != unset_face) check::face(face, dim);
-    check::region(region, dim);
+    check::face_or_region(face, region, dim);
     check::exactly_one(int(pressure == pressure) + int(static_cast<bool>(function)),
                        "pressure, function", "Pa");
     if (!function) check::finite("pressure", pressure, "Pa");
@@ -254,39 +281,40 @@ struct Drained {
   static constexpr const char* name = "bc::Drained";
   Face face = unset_face;  ///< side of the domain
   AnyRegion region = {};   ///< or region
+  TimeSwitch active = {};  ///< when; always by default
 
   /// The same condition as a prescribed pressure.
   template <int Dim>
   PrescribedPressure<Dim> prescribed() const {
-    return {.face = face, .region = region, .pressure = 0};
+    return {.face = face, .region = region, .pressure = 0, .active = active};
   }
-  void validate(int dim) const {
-    if (face == unset_face && !region.given())
-      throw SetupError("face = (missing), region = (missing), allowed: one or both [m]");
-    if (face != unset_face) check::face(face, dim);
-    check::region(region, dim);
-  }
+  void validate(int dim) const { check::face_or_region(face, region, dim); }
 };
 
 /// Liquid pressure held at 0 at the current ground surface, wherever it has moved to: the paper's
 /// rain, [Zhan] 4.4. Water is supplied without limit and counted as inflow.
 struct ZeroSuction {
   static constexpr const char* name = "bc::ZeroSuction";
-  AnyRegion region = {};  ///< part of the surface; all of it by default
+  AnyRegion region = {};   ///< part of the surface; all of it by default
+  TimeSwitch active = {};  ///< when; always by default
 
   void validate(int dim) const { check::region(region, dim); }
 };
 
 /// Rain on the current ground and on free water, straight down (against the last axis). Per column of
-/// cells the soil drinks up to what it can take at p = 0; what is left stays on the ground as a film
-/// and becomes points of free water, which pond and run off, as soon as it fills half a cell. Under
-/// rain no water is drawn in without supply, and water that seeps out joins the film. Give `rate` or
-/// `function`. Evaporation has no model: negative rates are refused, and from a function read as 0.
+/// cells the soil drinks up to what it can take; what is left stays on the ground as a film, runs down
+/// slopes (sheet flow by Manning's formula, without momentum), soaks in elsewhere, and becomes points
+/// of free water as soon as it fills half a cell. Under rain no water is drawn in without supply, and
+/// water that seeps out joins the film. Give `rate` or `function`. Evaporation has no model: negative
+/// rates are refused, and from a function read as 0.
 struct Rain {
   static constexpr const char* name = "bc::Rain";
   Real rate = unset;                        ///< r [m/s] per horizontal area, >= 0
   std::function<Real(Real)> function = {};  ///< r(t [s]) [m/s]
   AnyRegion region = {};                    ///< part of the ground; all of it by default
+  /// Manning's n [s/m^(1/3)], > 0. One for all ground: that of the rain added last.
+  Real roughness = 0.03;
+  TimeSwitch active = {};  ///< when; always by default
 
   void validate(int dim) const {
     check::exactly_one(int(rate == rate) + int(static_cast<bool>(function)), "rate, function",
@@ -295,10 +323,79 @@ struct Rain {
       check::non_negative("function(0 s)", function(0), "m/s");
     else
       check::non_negative("rate", rate, "m/s");
+    check::positive("roughness", roughness, "s/m^(1/3)");
     check::region(region, dim);
   }
   /// Rate [m/s] at time t [s].
   Real at(Real t) const { return function ? function(t) : rate; }
+};
+
+/// Hydraulic head held at a wall or at a part of the ground: p = gamma_l (H - z), z the height against
+/// gravity, gamma_l = rho_l |g|. Above H that is suction; water passes both ways. Give `head` or
+/// `function`.
+struct PrescribedHead {
+  static constexpr const char* name = "bc::PrescribedHead";
+  Face face = unset_face;                   ///< side of the domain
+  AnyRegion region = {};                    ///< or region
+  Real head = unset;                        ///< H [m], the height at which p = 0
+  std::function<Real(Real)> function = {};  ///< H(t [s]) [m]
+  TimeSwitch active = {};                   ///< when; always by default
+
+  void validate(int dim) const {
+    check::face_or_region(face, region, dim);
+    check::exactly_one(int(head == head) + int(static_cast<bool>(function)), "head, function", "m");
+    check::finite(function ? "function(0 s)" : "head", at(0), "m");
+  }
+  /// H [m] at time t [s].
+  Real at(Real t) const { return function ? function(t) : head; }
+};
+
+/// Still water outside the soil, up to a level that may rise and fall: below the level p = gamma_l
+/// (level - z) on the soil, whose weight the ground carries; above it a seepage face: water may come
+/// out, none goes in. Give `level` or `function`. With neither face nor region: the whole ground.
+struct Reservoir {
+  static constexpr const char* name = "bc::Reservoir";
+  Face face = unset_face;                   ///< side of the domain
+  AnyRegion region = {};                    ///< part of it, or of the ground
+  Real level = unset;                       ///< height of the water surface [m]
+  std::function<Real(Real)> function = {};  ///< level(t [s]) [m]
+  TimeSwitch active = {};                   ///< when; always by default
+
+  void validate(int dim) const {
+    check::wall_or_ground(face, region, dim);
+    check::exactly_one(int(level == level) + int(static_cast<bool>(function)), "level, function",
+                       "m");
+    check::finite(function ? "function(0 s)" : "level", at(0), "m");
+  }
+  /// Level [m] at time t [s].
+  Real at(Real t) const { return function ? function(t) : level; }
+};
+
+/// Water leaves the soil where its pressure exceeds `pressure`; none goes in. With neither face nor
+/// region: the whole ground.
+struct Drain {
+  static constexpr const char* name = "bc::Drain";
+  Face face = unset_face;  ///< side of the domain
+  AnyRegion region = {};   ///< part of it, or of the ground
+  Real pressure = 0;       ///< in the drain [Pa]
+  TimeSwitch active = {};  ///< when; always by default
+
+  void validate(int dim) const {
+    check::wall_or_ground(face, region, dim);
+    check::finite("pressure", pressure, "Pa");
+  }
+};
+
+/// Soil open to the air, where springs may come out but no water goes in: Drain at 0 Pa.
+struct SeepageFace {
+  static constexpr const char* name = "bc::SeepageFace";
+  Face face = unset_face;  ///< side of the domain
+  AnyRegion region = {};   ///< part of it, or of the ground
+  TimeSwitch active = {};  ///< when; always by default
+
+  /// The same condition as a drain.
+  Drain drain() const { return {.face = face, .region = region, .active = active}; }
+  void validate(int dim) const { check::wall_or_ground(face, region, dim); }
 };
 
 }  // namespace bc

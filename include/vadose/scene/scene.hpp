@@ -156,6 +156,8 @@ class Scene {
       });
       if constexpr (std::is_same_v<Condition, bc::Drained>)
         store(condition.template prescribed<dim>());
+      else if constexpr (std::is_same_v<Condition, bc::SeepageFace>)
+        store(condition.drain());
       else
         store(condition);
     }
@@ -177,13 +179,13 @@ class Scene {
   }
 
   /// Conditions of one type: scene.conditions<bc::Fixed>(). Drained ones are listed as
-  /// PrescribedPressure.
+  /// PrescribedPressure, seepage faces as Drain.
   template <class Condition>
   const std::vector<Condition>& conditions() const noexcept {
-    static_assert(
-        detail::is_one_of<std::vector<Condition>, Fixed, Roller, Frictional, Traction,
-                          PrescribedVelocity, Impermeable, PrescribedPressure, ZeroSuction, Rain>,
-        "vadose: Scene::conditions takes a stored condition of vadose::bc");
+    static_assert(detail::is_one_of<std::vector<Condition>, Fixed, Roller, Frictional, Traction,
+                                    PrescribedVelocity, Impermeable, PrescribedPressure,
+                                    PrescribedHead, Reservoir, Drain, ZeroSuction, Rain>,
+                  "vadose: Scene::conditions takes a stored condition of vadose::bc");
     return std::get<std::vector<Condition>>(conditions_);
   }
 
@@ -222,17 +224,21 @@ class Scene {
   using PrescribedPressure = std::vector<bc::PrescribedPressure<dim>>;
   using ZeroSuction = std::vector<bc::ZeroSuction>;
   using Rain = std::vector<bc::Rain>;
+  using PrescribedHead = std::vector<bc::PrescribedHead>;
+  using Reservoir = std::vector<bc::Reservoir>;
+  using Drain = std::vector<bc::Drain>;
 
   template <class C>
   static constexpr bool is_wall = detail::is_one_of<C, bc::Fixed, bc::Roller, bc::Frictional>;
   template <class C>
   static constexpr bool acts_on_liquid =
-      detail::is_one_of<C, bc::Impermeable, bc::PrescribedPressure<dim>, bc::Drained,
-                        bc::ZeroSuction, bc::Rain>;
+      detail::is_one_of<C, bc::Impermeable, bc::PrescribedPressure<dim>, bc::PrescribedHead,
+                        bc::Drained, bc::Reservoir, bc::Drain, bc::SeepageFace, bc::ZeroSuction,
+                        bc::Rain>;
   template <class C>
   static constexpr bool acts_on_skeleton =
       detail::is_one_of<C, bc::Frictional, bc::Traction<dim>, bc::PrescribedVelocity<dim>,
-                        bc::ZeroSuction, bc::Rain>;
+                        bc::Reservoir, bc::Drain, bc::SeepageFace, bc::ZeroSuction, bc::Rain>;
   template <class C>
   static constexpr bool is_known = is_wall<C> || acts_on_liquid<C> || acts_on_skeleton<C>;
 
@@ -359,37 +365,48 @@ class Scene {
       refuse_conflict<Fixed>(condition);
       refuse_conflict<Roller>(condition);
       refuse_conflict<Frictional>(condition);
-    } else if constexpr (requires { condition.face; }) {
+    } else if constexpr (acts_on_liquid<Condition>) {
       refuse_conflict<Impermeable>(condition);
       refuse_conflict<PrescribedPressure>(condition);
-    } else if constexpr (detail::is_one_of<Condition, bc::ZeroSuction, bc::Rain>) {
-      refuse_second_surface<ZeroSuction>(condition);
-      refuse_second_surface<Rain>(condition);
+      refuse_conflict<PrescribedHead>(condition);
+      refuse_conflict<Reservoir>(condition);
+      refuse_conflict<Drain>(condition);
+      refuse_conflict<ZeroSuction>(condition);
+      refuse_conflict<Rain>(condition);
     }
     std::get<std::vector<Condition>>(conditions_).push_back(condition);
   }
 
-  /// Two conditions of one kind for a whole face contradict each other.
+  /// Two conditions of one kind for a whole face, or for the whole ground, contradict each other.
   template <class List, class Condition>
   void refuse_conflict(const Condition& added) const {
-    if (added.face == unset_face || limited(added)) return;
-    for (const auto& other : std::get<List>(conditions_))
-      if (other.face == added.face && !limited(other))
-        throw SetupError("face = " + std::string(name(added.face)) + " outside {free faces} [-]: " +
-                         added.name + " contradicts " + other.name + " there; give one a region");
-  }
-  /// So do two conditions for the whole ground surface.
-  template <class List, class Condition>
-  void refuse_second_surface(const Condition& added) const {
     if (limited(added)) return;
-    for (const auto& other : std::get<List>(conditions_))
-      if (!limited(other))
-        throw SetupError(
-            "region = (everywhere) outside {parts of the surface} [m]: " + std::string(added.name) +
-            " contradicts " + other.name + " there; give one a region");
+    const Face face = face_of(added);
+    for (const auto& other : std::get<List>(conditions_)) {
+      if (face_of(other) != face || limited(other)) continue;
+      const std::string place = face == unset_face
+                                    ? "region = (everywhere) outside {parts of the surface} [m]: "
+                                    : joined_face(face);
+      throw SetupError(place + added.name + " contradicts " + other.name +
+                       " there; give one a region");
+    }
   }
+  static std::string joined_face(Face face) {
+    return "face = " + std::string(name(face)) + " outside {free faces} [-]: ";
+  }
+  /// The wall of a condition; unset: the ground surface.
+  template <class Condition>
+  static Face face_of(const Condition& condition) {
+    if constexpr (requires { condition.face; })
+      return condition.face;
+    else
+      return unset_face;
+  }
+  /// Acts on a part of its face or of the ground, or not always.
   template <class Condition>
   static bool limited(const Condition& condition) {
+    if constexpr (requires { condition.active; })
+      if (condition.active) return true;
     if constexpr (requires { condition.region; })
       return condition.region.given();
     else
@@ -434,7 +451,7 @@ class Scene {
   std::vector<WaterBody<dim>> waters_;
   std::vector<Material<M>> materials_;
   std::tuple<Fixed, Roller, Frictional, Traction, PrescribedVelocity, Impermeable,
-             PrescribedPressure, ZeroSuction, Rain>
+             PrescribedPressure, PrescribedHead, Reservoir, Drain, ZeroSuction, Rain>
       conditions_;
 };
 

@@ -4,6 +4,7 @@
 /// \file
 /// From a scene to the state of a run: points, soils, walls, loads.
 
+#include <algorithm>
 #include <utility>
 
 #include <vadose/kernel/state.hpp>
@@ -127,34 +128,99 @@ void prepare_soils(State<M>& state, const Scene<M>& scene) {
   }
 }
 
-/// Held pressures: walls first given, then the surface.
-template <class M>
-HeldPressure<M::Kinematics::dim> held_pressure(
-    const bc::PrescribedPressure<M::Kinematics::dim>& c) {
+/// Place and time of a liquid condition.
+template <class M, class Condition>
+HeldPressure<M::Kinematics::dim> held_place(const Condition& c, HeldKind kind) {
   constexpr int dim = M::Kinematics::dim;
   HeldPressure<dim> h;
-  if (c.face != unset_face) {
-    h.face_axis = axis(c.face, dim);
-    h.face_side = side(c.face);
-  }
-  h.contains = [region = c.region](const Vec<dim>& x) { return region.contains(x); };
-  h.pressure = [c](const Vec<dim>& x, Real t) { return c.at(x, t); };
-  return h;
-}
-template <class M>
-HeldPressure<M::Kinematics::dim> held_pressure(const bc::ZeroSuction& c) {
-  constexpr int dim = M::Kinematics::dim;
-  HeldPressure<dim> h;
+  h.kind = kind;
+  if constexpr (requires { c.face; })
+    if (c.face != unset_face) {
+      h.face_axis = axis(c.face, dim);
+      h.face_side = side(c.face);
+    }
+  h.limited = c.region.given();
+  h.active = c.active;
   h.contains = [region = c.region](const Vec<dim>& x) { return region.contains(x); };
   h.pressure = [](const Vec<dim>&, Real) { return Real(0); };
   return h;
 }
 
+/// Pressure under still water whose surface is at level(t), negative above it.
+template <class M, class Condition>
+HeldPressure<M::Kinematics::dim> held_level(const State<M>& state, const Condition& c,
+                                            HeldKind kind) {
+  constexpr int dim = M::Kinematics::dim;
+  auto h = held_place<M>(c, kind);
+  h.pressure = [c, gravity = state.gravity, weight = state.water.density * state.gravity.norm()](
+                   const Vec<dim>& x, Real t) { return weight * (c.at(t) - height(x, gravity)); };
+  return h;
+}
+
+/// What the kernels need of a liquid condition.
 template <class M>
-HeldPressure<M::Kinematics::dim> held_pressure(const bc::Rain& c) {
-  HeldPressure<M::Kinematics::dim> h = held_pressure<M>(bc::ZeroSuction{.region = c.region});
+auto held_pressure(const State<M>&, const bc::PrescribedPressure<M::Kinematics::dim>& c) {
+  auto h = held_place<M>(c, HeldKind::open);
+  h.pressure = [c](const Vec<M::Kinematics::dim>& x, Real t) { return c.at(x, t); };
+  return h;
+}
+template <class M>
+auto held_pressure(const State<M>& state, const bc::Drained& c) {
+  return held_pressure(state, c.template prescribed<M::Kinematics::dim>());
+}
+template <class M>
+auto held_pressure(const State<M>& state, const bc::PrescribedHead& c) {
+  return held_level(state, c, HeldKind::open);
+}
+template <class M>
+auto held_pressure(const State<M>& state, const bc::Reservoir& c) {
+  return held_level(state, c, HeldKind::reservoir);
+}
+template <class M>
+auto held_pressure(const State<M>&, const bc::Drain& c) {
+  auto h = held_place<M>(c, HeldKind::outlet);
+  h.pressure = [p = c.pressure](const Vec<M::Kinematics::dim>&, Real) { return p; };
+  return h;
+}
+template <class M>
+auto held_pressure(const State<M>& state, const bc::SeepageFace& c) {
+  return held_pressure(state, c.drain());
+}
+template <class M>
+auto held_pressure(const State<M>&, const bc::Impermeable& c) {
+  return held_place<M>(c, HeldKind::closed);
+}
+template <class M>
+auto held_pressure(const State<M>&, const bc::ZeroSuction& c) {
+  return held_place<M>(c, HeldKind::open);
+}
+template <class M>
+auto held_pressure(const State<M>&, const bc::Rain& c) {
+  auto h = held_place<M>(c, HeldKind::rain);
   h.supply = [c](Real t) { return c.at(t); };
   return h;
+}
+
+/// Adds a liquid condition: those limited to a region go before those that are not.
+template <class M, class Condition>
+void add_held(State<M>& state, const Condition& condition) {
+  auto h = held_pressure(state, condition);
+  if (h.active) h.acts = h.active(state.time);
+  if constexpr (std::is_same_v<Condition, bc::Rain>) state.roughness = condition.roughness;
+  auto at = state.held.end();
+  if (h.limited)
+    at = std::find_if(state.held.begin(), state.held.end(),
+                      [](const auto& other) { return !other.limited; });
+  state.held.insert(at, std::move(h));
+}
+
+/// Adds all liquid conditions of some types in a scene.
+template <class... Conditions, class M>
+void add_all_held(State<M>& state, const Scene<M>& scene) {
+  const auto add = [&](const auto& list) {
+    for (const auto& c : list) add_held(state, c);
+  };
+  (add(scene.template conditions<Conditions>()), ...);
 }
 
 /// Axis along which a box is thinnest.
@@ -229,14 +295,9 @@ void assemble(State<M>& state, const Scene<M>& scene) {
   if constexpr (has_liquid<M>) {
     for (std::size_t i = 0; i < scene.waters().size(); ++i)
       seed_water(state, scene, initial, static_cast<int>(i), next_liquid);
-    for (const auto& c : scene.template conditions<bc::PrescribedPressure<dim>>())
-      state.held.push_back(held_pressure<M>(c));
+    add_all_held<bc::Impermeable, bc::PrescribedPressure<dim>, bc::PrescribedHead>(state, scene);
     if constexpr (has_skeleton<M>)
-      for (const auto& c : scene.template conditions<bc::ZeroSuction>())
-        state.held.push_back(held_pressure<M>(c));
-    if constexpr (has_skeleton<M>)
-      for (const auto& c : scene.template conditions<bc::Rain>())
-        state.held.push_back(held_pressure<M>(c));
+      add_all_held<bc::Reservoir, bc::Drain, bc::ZeroSuction, bc::Rain>(state, scene);
     state.next_liquid_id = next_liquid;
   }
   if constexpr (is_deformable<M>)

@@ -109,15 +109,13 @@ class Solver {
   const auto& solid() const noexcept { return state_.solid; }    ///< solid points
   const auto& liquid() const noexcept { return state_.liquid; }  ///< liquid points
 
-  /// Adds a condition on the liquid that opens now: bc::ZeroSuction, bc::Rain,
-  /// bc::PrescribedPressure, bc::Drained. At the ground the condition added first counts.
+  /// Adds a condition on the liquid that opens now: bc::PrescribedPressure, PrescribedHead, Drained,
+  /// Drain, SeepageFace, Reservoir, ZeroSuction, Rain or Impermeable. Where several meet, those with
+  /// a region go first, then those added first.
   template <class Condition>
   void add(const Condition& condition) {
     check::in_context(Condition::name, [&] { condition.validate(dim); });
-    if constexpr (std::is_same_v<Condition, bc::Drained>)
-      state_.held.push_back(detail::held_pressure<M>(condition.template prescribed<dim>()));
-    else
-      state_.held.push_back(detail::held_pressure<M>(condition));
+    detail::add_held(state_, condition);
     detail::flag_nodes(state_, walls_);
   }
 
@@ -125,6 +123,7 @@ class Solver {
   StepReport step(Real t_end = 1e300) noexcept(false) {
     if (state_.slack > 0.25 * state_.grid.cell_size() || state_.solid.has_new() || has_new_liquid())
       sort();
+    switch_conditions();
     state_.trouble = Trouble{};
     const kernel::StableStep used = Scheme::step(state_, t_end - state_.time);
     state_.time += state_.dt;
@@ -243,8 +242,8 @@ class Solver {
 
   /// Restarts the water count: what is stored now becomes `initial`.
   void reset_balances() {
-    for (auto& h : state_.held) h.inflow = h.outflow = 0;
-    state_.rain = 0;
+    for (auto& h : state_.held) h.inflow = h.outflow = {};
+    state_.rain = {};
     count_initial();
   }
 
@@ -252,6 +251,18 @@ class Solver {
   State<M>& mutable_state() noexcept { return state_; }
 
  private:
+  /// Turns conditions on and off by their switches; walls follow.
+  void switch_conditions() {
+    bool changed = false;
+    for (auto& h : state_.held) {
+      if (!h.active) continue;
+      const bool acts = h.active(state_.time);
+      changed = changed || acts != h.acts;
+      h.acts = acts;
+    }
+    if (changed) detail::flag_nodes(state_, walls_);
+  }
+
   bool has_new_liquid() const {
     if constexpr (has_liquid<M>)
       return state_.liquid.has_new();

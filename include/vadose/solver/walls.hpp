@@ -74,7 +74,7 @@ std::uint16_t flag_node(const State<M>& state, const Walls<State<M>::dim>& walls
           extra.friction = f.friction_coefficient;
         }
       for (const auto& h : state.held)
-        open = open || (h.face_axis == d && h.face_side == s && h.contains(x));
+        open = open || (h.kind != HeldKind::closed && h.is_at(d, s, x));
       if (!friction) flags |= static_cast<std::uint16_t>(node_flag::solid_fixed << d);
       if (!open) flags |= static_cast<std::uint16_t>(node_flag::liquid_fixed << d);
     }
