@@ -88,6 +88,8 @@
 #include <vadose/scene/initial_state.hpp>
 #include <vadose/scene/scene.hpp>
 #include <vadose/solver/assemble.hpp>
+#include <vadose/solver/escaped_points.hpp>
+#include <vadose/solver/gather_films.hpp>
 #include <vadose/solver/release_films.hpp>
 #include <vadose/solver/report.hpp>
 #include <vadose/solver/scheme.hpp>

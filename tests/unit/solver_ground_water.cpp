@@ -183,3 +183,42 @@ TEST_CASE("conditions that contradict each other are refused") {
   scene.add(vd::bc::Drain{.face = Face::right});
   scene.add(vd::bc::Rain{.rate = 1e-6});
 }
+
+namespace {
+
+/// A dam of water on flat tight ground breaks; its right wall is a drain.
+vd::Solver<Strip> broken_dam(vd::Escape escaped) {
+  vd::Scene<Strip> scene({.box = {{0.0, 0.0}, {1.0, 0.8}}, .cell_size = 0.1});
+  scene.gravity = {0, -9.81};
+  scene.liquid.bulk_modulus = 1e6;
+  scene.add_soil(vd::box({0.0, 0.0}, {1.0, 0.2}),
+                 {.name = "sand",
+                  .porosity = 0.4,
+                  .lambda = 0.63,
+                  .retention = {.a = 3, .porosity_dependent = false},
+                  .conductivity = {.saturated_conductivity = 1e-3, .porosity_dependent = false}},
+                 {.saturation = 0.3});
+  scene.add_water(vd::box({0.0, 0.2}, {0.5, 0.6}), {.surface_level = 0.6});
+  scene.add(vd::bc::Drain{.face = Face::right});
+  return vd::Solver<Strip>(scene, {.transfer = {.pic_rate = 5}, .escaped = escaped});
+}
+
+}  // namespace
+
+TEST_CASE("points that leave the box: refused, counted out, or kept in") {
+  auto strict = broken_dam(vd::Escape::error);
+  CHECK_THROWS_WITH_AS(strict.advance_to(2), doctest::Contains("points inside the box"),
+                       vd::InstabilityError);
+  auto open = broken_dam(vd::Escape::outflow);
+  open.advance_to(2);
+  const auto w = open.water_balance();
+  MESSAGE("lost ", w.lost, " of ", w.initial, " kg, pore ", w.pore, ", free ", w.free, ", film ",
+          w.film, ", closure ", w.relative_closure());
+  CHECK(w.lost > 0.2 * w.initial);
+  check_closed(w);
+  CHECK(open.solid_balance().lost == 0);
+  auto kept = broken_dam(vd::Escape::clamp);
+  kept.advance_to(2);
+  CHECK(kept.water_balance().lost == 0);
+  check_closed(kept.water_balance());
+}

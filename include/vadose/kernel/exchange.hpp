@@ -61,8 +61,8 @@ template <class M>
 void find_flux(State<M>& state, const CellView<M>& view, int axis, FaceFlux& face) {
   constexpr int dim = State<M>::dim;
   face.flux = 0;
-  if (face.kind == FaceKind::closed || (face.kind == FaceKind::surface && face.held < 0)) return;
-  if (face.thirsty) {
+  if (face.kind == FaceKind::closed) return;
+  if (face.is_shut()) {
     face.flux = face.soil_below ? -face.supply : face.supply;
     return;
   }

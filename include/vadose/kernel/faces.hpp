@@ -8,20 +8,34 @@
 
 namespace vadose::kernel {
 
-/// Conductivities of every soil cell at its own saturation and at S = 1.
+/// Saturation that belongs to the pressure of a cell, which its mean saturation does not quite: the
+/// pressure varies over the cell, and near S = 1 a 1e-5 of S is 15 % of a clay's conductivity. Cells
+/// too dry for their pressure to say so count by their water.
+template <class M>
+Real saturation_at_pressure(const Material<M>& material, Real floor,
+                            const Cell<State<M>::dim>& cell) noexcept {
+  if (cell.pressure >= 0) return 1;
+  if (!(cell.pressure > floor)) return cell.saturation;
+  return swrc::saturation_and_slope<Real>(material.retention, -cell.pressure, cell.porosity)
+      .saturation;
+}
+
+/// Conductivities of every soil cell at its own pressure and at S = 1.
 template <class M>
 void find_conductivities(State<M>& state) {
   for_pressure_cells(state, [&](Cell<State<M>::dim>& cell, std::int32_t, int) {
     if (!(cell.soil_share > 0)) return;
-    const auto& material = state.soils[cell.material].material;
+    const auto& soil = state.soils[cell.material];
+    const auto& material = soil.material;
     cell.saturated_conductivity =
         conductivity::value<Real>(material.conductivity, 1, cell.soil_porosity);
     cell.conductivity = cell.saturated_conductivity;
     if constexpr (is_unsaturated<M>) {
-      if (cell.saturation < 1)
+      const Real saturation = saturation_at_pressure<M>(material, soil.pressure_floor, cell);
+      if (saturation < 1)
         cell.conductivity = conductivity::value<Real>(
-            material.conductivity,
-            swrc::effective_saturation<Real>(material.retention, cell.saturation), cell.porosity);
+            material.conductivity, swrc::effective_saturation<Real>(material.retention, saturation),
+            cell.porosity);
     }
   });
 }
@@ -98,17 +112,19 @@ Vec<State<M>::dim> face_centre(const CellView<M>& view, int axis) {
   return x;
 }
 
+/// What find_held returns where water is to be kept from passing.
+inline constexpr std::int16_t held_closed = -2;
+
 /// Index of the held pressure at a wall (axis, side) or at the surface (axis -1); -1: none.
 template <class M>
 std::int16_t find_held(const State<M>& state, int axis, int side, const Vec<State<M>::dim>& x) {
   for (std::size_t i = 0; i < state.held.size(); ++i)
     if (state.held[i].is_at(axis, side, x))
-      return state.held[i].kind == HeldKind::closed ? std::int16_t{-1}
-                                                    : static_cast<std::int16_t>(i);
+      return state.held[i].kind == HeldKind::closed ? held_closed : static_cast<std::int16_t>(i);
   return -1;
 }
 
-/// Ground under rain. The soil could take k H / gamma at the pressure of the film; given less than
+/// Ground under rain or a film. The soil could take k H / gamma at the pressure of the film; given less than
 /// that it drinks all of it and its surface stays under suction, closed to the nodes; given more it
 /// is held at that pressure.
 template <class M>
@@ -127,19 +143,15 @@ void rained_face(const State<M>& state, const Cell<State<M>::dim>& soil,
 
 /// Face at a held pressure, at the given point of a wall or of the ground.
 template <class M>
-void held_face(const State<M>& state, const CellView<M>& view, int axis,
-               const Cell<State<M>::dim>& soil, const Real (&at)[State<M>::dim], FaceFlux& face) {
+void held_face(const State<M>& state, int axis, const Cell<State<M>::dim>& soil,
+               const Real (&at)[State<M>::dim], FaceFlux& face) {
   const auto& held = state.held[static_cast<std::size_t>(face.held)];
   Vec<State<M>::dim> x;
   for (int d = 0; d < State<M>::dim; ++d) x[d] = at[d];
   Real p = held.pressure(x, state.time);
   const bool dry = held.kind == HeldKind::reservoir && p <= 0;
   if (dry) p = 0;
-  const RainColumn<State<M>::dim>* column = nullptr;
-  if (held.kind == HeldKind::rain) column = column_above(state, view, axis, face.soil_below);
-  if (column) p = film_pressure(state, *column);
   outer_face(state, axis, soil, at, p, face);
-  if (held.kind == HeldKind::rain) rained_face(state, soil, column, face);
   if (dry || held.kind == HeldKind::outlet)
     face.thirsty = (face.soil_below ? face.head_gradient : -face.head_gradient) >= 0;
 }
@@ -153,12 +165,21 @@ void surface_face(const State<M>& state, const CellView<M>& view, int axis,
   face.saturation = soil.saturation;
   face.conductivity = soil.conductivity;
   face.held = find_held(state, -1, 0, face_centre(view, axis));
-  if (face.held < 0) return;
+  const RainColumn<State<M>::dim>* column = nullptr;
+  if (state.films && face.held != held_closed &&
+      (face.held < 0 || state.held[static_cast<std::size_t>(face.held)].kind == HeldKind::rain))
+    column = column_above(state, view, axis, face.soil_below);
+  if (face.held < 0 && !(column && column->film > 0)) return;
   const Real h = state.grid.cell_size();
   Real at[State<M>::dim];
   for (int d = 0; d < State<M>::dim; ++d) at[d] = soil.centroid[d];
   at[axis] += (face.soil_below ? 0.5 : -0.5) * min(1.5, soil.fill) * h;
-  held_face(state, view, axis, soil, at, face);
+  if (column || state.held[static_cast<std::size_t>(face.held)].kind == HeldKind::rain) {
+    outer_face(state, axis, soil, at, column ? film_pressure(state, *column) : 0, face);
+    rained_face(state, soil, column, face);
+  } else {
+    held_face(state, axis, soil, at, face);
+  }
 }
 
 /// Face between soil and a wall.
@@ -173,7 +194,7 @@ void wall_face(const State<M>& state, const CellView<M>& view, int axis, int sid
   Real at[State<M>::dim];
   for (int d = 0; d < State<M>::dim; ++d) at[d] = soil.centroid[d];
   at[axis] = centre[axis];
-  held_face(state, view, axis, soil, at, face);
+  held_face(state, axis, soil, at, face);
 }
 
 /// Face between soil and free water.
@@ -264,7 +285,7 @@ void find_reference_pressures(State<M>& state) {
               Real sum = 0, area = 0;
               for_faces(view, [&](const FaceFlux& face) {
                 if (face.kind != FaceKind::surface) return;
-                sum += face.area * (face.held < 0 || face.thirsty ? own : face.held_pressure);
+                sum += face.area * (face.is_shut() ? own : face.held_pressure);
                 area += face.area;
               });
               cell.has_reference = area > 0;
@@ -276,7 +297,7 @@ void find_reference_pressures(State<M>& state) {
 template <class M>
 void find_faces(State<M>& state) {
   constexpr int dim = State<M>::dim;
-  if (has_rain(state)) find_columns(state);
+  if (state.films) find_columns(state);
   find_conductivities(state);
   for_cells(state.grid, state.options.threads,
             [&](std::int32_t e, const Index<dim>& local, int slot, int) {

@@ -107,11 +107,16 @@ struct FaceFlux {
   Real area = 0;           ///< [m2]
   Real flux = 0;           ///< volume per time, upwards along the axis, times A [m3/s]
   FaceKind kind = FaceKind::closed;
-  std::int16_t held = -1;   ///< which HeldPressure; -1: a surface that lets no water through
-  bool fed = false;         ///< rain or its film feeds the surface and takes what comes out
+  std::int16_t held = -1;   ///< which HeldPressure; -1: none
+  bool fed = false;         ///< a film feeds the surface and takes what comes out
   bool thirsty = false;     ///< the soil drinks all it is given: its surface stays under suction
   Real supply = 0;          ///< what a fed or thirsty face can take at most [m3/s]
   bool soil_below = false;  ///< of a surface or to_free face: the soil is on the lower side
+
+  /// A surface that lets no water through, as far as pressures and nodes are concerned.
+  bool is_shut() const noexcept {
+    return kind == FaceKind::surface && ((held < 0 && !fed) || thirsty);
+  }
 };
 
 /// All arrays of the grid; one entry per cell or node of the existing blocks.

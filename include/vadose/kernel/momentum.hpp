@@ -140,7 +140,7 @@ NodeSums<State<M>::dim> gather_node(const State<M>& state, const CellView<M>& vi
       if (corner[d]) continue;
       const FaceFlux& f = nodes.face[e * dim + static_cast<std::size_t>(d)];
       if (f.kind == FaceKind::closed) continue;
-      if (f.kind == FaceKind::surface && (f.held < 0 || f.thirsty)) continue;
+      if (f.is_shut()) continue;
       open = open || f.kind == FaceKind::surface;
       ++faces[d];
       saturation[d] += f.saturation;

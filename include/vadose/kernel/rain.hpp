@@ -34,7 +34,7 @@ Real column_area(const CellView<M>& view) noexcept {
 }
 
 /// Highest water-bearing cell of every column: it catches the column's rain. Rates are read once.
-/// Serial: columns span blocks. Called only in scenes with rain.
+/// Serial: columns span blocks. Called only where there may be films.
 template <class M>
 void find_columns(State<M>& state) {
   constexpr int dim = State<M>::dim, up = dim - 1;
@@ -160,7 +160,7 @@ void route_films(State<M>& state) {
 template <class M>
 void settle_films(State<M>& state) {
   constexpr int dim = State<M>::dim;
-  if (!has_rain(state)) return;
+  if (!state.films) return;
   const Real mass_per_flux = state.dt * state.water.density;
   for (auto& column : state.columns) {
     const Real fallen = mass_per_flux * rain_on(state, column);

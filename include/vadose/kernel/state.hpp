@@ -106,19 +106,27 @@ struct HeldPressure {
   }
 };
 
-/// A vertical column of cells under rain.
+/// A vertical column of cells, where films may stand on the ground.
 template <int Dim>
 struct RainColumn {
   std::int32_t top = -1;  ///< highest cell that holds soil or water, -1: none
   Index<Dim> top_cell{};  ///< its coordinates
   Real area = 0;          ///< horizontal [m2]
-  Real film = 0;          ///< water on the ground that is no point yet [kg]; outlives the step
+  Real film = 0;          ///< water on the ground that is no point [kg]; outlives the step
+  bool gathers = false;   ///< its free points in the top cell become film
 };
 
 /// Numbers of the liquid.
 struct LiquidNumbers {
   Real density = 1000;        ///< rho_l0 [kg/m3]
   Real bulk_modulus = 2.2e9;  ///< K [Pa]
+};
+
+/// What happens to points that leave the box.
+enum class Escape : std::uint8_t {
+  error,    ///< the step fails
+  outflow,  ///< they are taken out and counted as lost
+  clamp,    ///< they are put back on the wall, at rest across it
 };
 
 /// Choices of the explicit step.
@@ -129,6 +137,7 @@ struct StepOptions {
   Real dt_max = 1e30;           ///< largest step [s]
   Real free_relaxation = 10;    ///< rate at which free points of a cell share its pressure [1/s]
   int threads = 1;              ///< used where the host links OpenMP
+  Escape escaped = Escape::error;
 };
 
 /// Sums of one thread, in its own cache lines.
@@ -136,6 +145,7 @@ struct alignas(64) StepSums {
   Real max_speed2 = 0;  ///< [m2/s2]
   Real max_wave2 = 0;   ///< largest dry p-wave speed squared [m2/s2]
   bool failed = false;
+  bool escaped = false;  ///< a point left the box
 };
 
 /// What went wrong where.
@@ -184,8 +194,11 @@ struct State {
   std::vector<Real> factor_values;                 ///< the same at the present time [-]
   std::vector<SpecialNode<dim>> special;           ///< in ascending order of entry
   std::vector<HeldPressure<dim>> held;
-  std::vector<RainColumn<dim>> columns;  ///< under rain; empty without
+  bool films = false;                    ///< rain or free water: there may be films on the ground
+  std::vector<RainColumn<dim>> columns;  ///< empty without films
   Real roughness = 0.03;                 ///< Manning's, of the ground [s/m^(1/3)]
+  CompensatedSum lost_water;             ///< that left the box with its points [kg]
+  CompensatedSum lost_solid;             ///< the same of the grains [kg]
   CompensatedSum rain;                   ///< fallen so far [kg]
   std::int64_t next_liquid_id = 0;       ///< of the next liquid point
 

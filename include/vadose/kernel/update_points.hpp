@@ -214,7 +214,9 @@ VADOSE_INLINE void move(State<M>& state, Points& points, std::size_t b, const ch
   const Real limit = h / state.dt;
   const LaneMask fast = !(speed2 < Lanes(limit * limit));  // also true for NaN
   const LaneMask alive = points.load(field::id, b) >= Lanes(0.0);
-  if (any((fast | outside) & alive)) {
+  const bool may_escape = state.options.escaped != Escape::error;
+  if (any(outside & alive)) sums.escaped = true;
+  if (any((may_escape ? fast : fast | outside) & alive)) {
     sums.failed = true;
     report_trouble(state, points, b, fast & alive, "|v| dt < cell size", phase, sqrt(speed2));
     report_trouble(state, points, b, outside & alive, "points inside the box", phase,
@@ -316,6 +318,9 @@ void update_solid(State<M>& state) {
   });
 }
 
+/// Part of the difference in filling that points of a saturated cell even out per step [-].
+inline constexpr Real evening = 0.05;
+
 /// Share of its cell's gain that each pore-water point takes: in saturated cells so that all are
 /// equally full; else outflow in proportion to its mass, inflow to the room it has. Exchanged water carries
 /// its momentum. Writes mass, velocity and pressure.
@@ -340,9 +345,11 @@ VADOSE_INLINE void exchange_batch(State<M>& state, std::size_t b,
       Real dm;
       const Real room = state.water.density * cell.pore_volume - cell.water;
       if (cell.pressure >= 0) {
-        // Full pores: every point of the cell is as full as the others, or a point that crosses to
-        // another cell would bring its own pressure along (1 % of filling is 1 % of K).
-        dm = (cell.water + cell.gain) * pores / cell.pore_volume - mass[l];
+        // Full pores: every point of the cell becomes as full as the others, or a point that crosses
+        // to another cell would bring its own pressure along (1 % of filling is 1 % of K). Little by
+        // little: shares do not sum to 1 exactly, and done in one step that error would repeat.
+        const Real share = pores / cell.pore_volume;
+        dm = cell.gain * share + evening * (cell.water * share - mass[l]);
       } else if (cell.gain < 0) {
         dm = cell.gain * mass[l] / cell.water;
       } else {
@@ -417,6 +424,33 @@ VADOSE_INLINE void free_batch(State<M>& state, std::size_t b,
   }
 }
 
+/// Stops a free point at the boundary of cells that are soil for the most part: there it sinks in by
+/// mass, not by position. Axis by axis; a point that is in such a cell may move.
+template <class M>
+void stop_at_ground(const State<M>& state, const TileFrame<State<M>::dim>& frame,
+                    const std::int32_t* entries, int at, const Real (&x)[State<M>::dim],
+                    Real (&velocity)[State<M>::dim]) noexcept {
+  constexpr int dim = State<M>::dim;
+  const auto is_soil = [&](int cell) {
+    Real radius = 1;
+    if constexpr (State<M>::Kinematics::axisymmetric) radius = x[0];
+    return state.nodes.pore[static_cast<std::size_t>(entries[cell])][lane::bulk_volume] >
+           0.5 * state.cell_volume(radius);
+  };
+  if (is_soil(at)) return;
+  for (int d = 0; d < dim; ++d) {
+    const Real now = std::floor((x[d] - frame.first[d]) * frame.over_cell_size);
+    const Real then =
+        std::floor((x[d] + state.dt * velocity[d] - frame.first[d]) * frame.over_cell_size);
+    if (then == now) continue;
+    const int next = at + (then > now ? 1 : -1) * BlockGrid<dim>::tile_stride(d);
+    if (is_soil(next))
+      velocity[d] = 0;
+    else
+      at = next;
+  }
+}
+
 /// One batch of liquid points: velocity from the liquid's nodes; pore water moves with the
 /// skeleton through the skeleton's shape functions, free water with the total volume flux.
 template <class M>
@@ -466,6 +500,11 @@ VADOSE_INLINE void update_liquid_batch(State<M>& state, std::size_t b, int slot,
           const Record& r = state.nodes.mixture[static_cast<std::size_t>(entries[at])];
           for (int d = 0; d < dim; ++d) q[d] += stencil.product(i, l) * r[d];
         });
+        if (points.at(field::id, b)[l] >= 0) {
+          Real position[dim];
+          for (int d = 0; d < dim; ++d) position[d] = x[d][l];
+          stop_at_ground(state, frame, entries, cells.index[l], position, q);
+        }
         for (int d = 0; d < dim; ++d) flux[d].set(l, q[d]);
       }
     }

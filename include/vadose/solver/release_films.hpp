@@ -23,7 +23,12 @@ void release_films(State<M>& state) {
   for (auto& column : state.columns) {
     const Real row = state.water.density * column.area * spacing;
     if (column.top < 0 || !(column.film >= row)) continue;
-    const Real z = kernel::surface_height(state, column) + 0.5 * spacing;
+    // On soil in the cell above it: a cell that is soil for the most part holds no free points.
+    const bool on_soil =
+        state.nodes.cell[static_cast<std::size_t>(column.top)].kind == CellKind::soil;
+    const Real surface = on_soil ? state.grid.origin()[up] + (column.top_cell[up] + 1) * h
+                                 : kernel::surface_height(state, column);
+    const Real z = surface + 0.5 * spacing;
     if (z >= state.grid.origin()[up] + state.grid.cells()[up] * h) continue;  // waits for room
     for (int i = 0; i < count; ++i) {
       PointValues<LiquidFields<M>> point;

@@ -9,6 +9,8 @@
 #include <vector>
 
 #include <vadose/solver/assemble.hpp>
+#include <vadose/solver/escaped_points.hpp>
+#include <vadose/solver/gather_films.hpp>
 #include <vadose/solver/release_films.hpp>
 #include <vadose/solver/report.hpp>
 #include <vadose/solver/scheme.hpp>
@@ -26,6 +28,7 @@ struct SolverOptions {
   Real free_relaxation = 10;    ///< rate at which free points share their cell's pressure [1/s]
   typename M::Transfer transfer = {};  ///< numbers of the velocity transfer
   int threads = 1;                     ///< >= 1; more than one only where the host links OpenMP
+  Escape escaped = Escape::error;      ///< what happens to points that leave the box
 
   void validate() const {
     check::in_context("solver options", [&] {
@@ -92,7 +95,8 @@ class Solver {
     scene.validate();
     state_.transfer = options.transfer;
     state_.options = {options.courant, options.damping,         options.displacement_cap,
-                      options.dt_max,  options.free_relaxation, options.threads};
+                      options.dt_max,  options.free_relaxation, options.threads,
+                      options.escaped};
     detail::assemble(state_, scene);
     collect_walls(scene);
     state_.tiles.resize(static_cast<std::size_t>(2 * options.threads));
@@ -116,6 +120,7 @@ class Solver {
   void add(const Condition& condition) {
     check::in_context(Condition::name, [&] { condition.validate(dim); });
     detail::add_held(state_, condition);
+    find_films();
     detail::flag_nodes(state_, walls_);
   }
 
@@ -136,7 +141,11 @@ class Solver {
     }
     report.trouble = state_.trouble;
     state_.slack += state_.dt * std::sqrt(speed2);
-    if constexpr (has_liquid<M> && has_skeleton<M>) detail::release_films(state_);
+    detail::handle_escaped(state_);
+    if constexpr (has_liquid<M> && has_skeleton<M>) {
+      detail::gather_films(state_);
+      detail::release_films(state_);
+    }
     last_ = report;
     return report;
   }
@@ -195,6 +204,7 @@ class Solver {
       b.outflow += h.outflow;
     }
     b.rain = state_.rain;
+    b.lost = state_.lost_water;
     for (const auto& column : state_.columns) b.film += column.film;
     sum_water(b.pore, b.free);
     return b;
@@ -204,6 +214,7 @@ class Solver {
   SolidBalance solid_balance() const {
     SolidBalance b;
     b.initial = initial_solid_;
+    b.lost = state_.lost_solid;
     state_.solid.for_each(
         [&](std::size_t i, int l) { b.stored += state_.solid.at(field::mass, i)[l]; });
     return b;
@@ -243,7 +254,7 @@ class Solver {
   /// Restarts the water count: what is stored now becomes `initial`.
   void reset_balances() {
     for (auto& h : state_.held) h.inflow = h.outflow = {};
-    state_.rain = {};
+    state_.rain = state_.lost_water = state_.lost_solid = {};
     count_initial();
   }
 
@@ -294,7 +305,18 @@ class Solver {
     if constexpr (has_liquid<M>) state_.liquid.sort(state_.grid, groups);
     resize_grid();
     detail::flag_nodes(state_, walls_);
+    find_films();
     state_.slack = 0;
+  }
+
+  /// Whether there may be films on the ground.
+  void find_films() {
+    if constexpr (has_liquid<M> && has_skeleton<M>) {
+      if (state_.films) return;
+      state_.films = kernel::has_rain(state_);
+      for (std::size_t b = 0; b < state_.liquid.batches() && !state_.films; ++b)
+        state_.films = state_.liquid.group(b) == state_.free_group();
+    }
   }
 
   void resize_grid() {
