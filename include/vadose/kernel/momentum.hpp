@@ -245,14 +245,33 @@ void tie_normal(const Real (&normal)[Dim], bool rigid, NodeMotion<Dim>& node) no
   }
 }
 
+/// The entry of a node that is flagged as special.
+template <class M>
+const SpecialNode<State<M>::dim>& special_node(const State<M>& state, std::int32_t entry) {
+  // Flagged nodes are listed, in ascending order.
+  return *std::lower_bound(
+      state.special.begin(), state.special.end(), entry,
+      [](const SpecialNode<State<M>::dim>& s, std::int32_t wanted) { return s.entry < wanted; });
+}
+
+/// Velocity that a node's skeleton is given from outside; NaN along an axis that is free.
+template <class M>
+void find_prescribed(const State<M>& state, std::int32_t entry, std::uint16_t flags,
+                     Real (&velocity)[State<M>::dim]) {
+  constexpr int dim = State<M>::dim;
+  for (int d = 0; d < dim; ++d)
+    velocity[d] = is_rigid<M> || (flags & (node_flag::solid_fixed << d)) ? 0 : unset;
+  if (!(flags & node_flag::special)) return;
+  const auto& s = special_node(state, entry);
+  for (int d = 0; d < dim; ++d)
+    if (s.prescribed[d]) velocity[d] = state.factor_values[s.factor] * s.velocity[d];
+}
+
 /// Motion of a node prescribed by the user, and friction on walls.
 template <class M>
 void apply_special(const State<M>& state, std::int32_t entry, NodeMotion<State<M>::dim>& node) {
   constexpr int dim = State<M>::dim;
-  const auto found = std::lower_bound(
-      state.special.begin(), state.special.end(), entry,
-      [](const SpecialNode<dim>& s, std::int32_t wanted) { return s.entry < wanted; });
-  const SpecialNode<dim>& s = *found;  // flagged nodes are listed, in ascending order
+  const SpecialNode<dim>& s = special_node(state, entry);
   for (int d = 0; d < dim; ++d)
     if (s.prescribed[d]) node.solid[d] = state.factor_values[s.factor] * s.velocity[d];
   if (s.friction_axis < 0) return;
@@ -316,10 +335,11 @@ Real quadratic_drag_factor(const State<M>& state, const NodeSums<State<M>::dim>&
   }
 }
 
-/// New velocities of a node that may hold both phases.
+/// New velocities of a node that may hold both phases; the drag feels a prescribed skeleton.
 template <class M>
 void advance_pair(const State<M>& state, const NodeSums<State<M>::dim>& sums, Real porosity,
-                  Real skeleton_volume, std::uint16_t flags, NodeMotion<State<M>::dim>& node) {
+                  Real skeleton_volume, const Real (&prescribed)[State<M>::dim],
+                  NodeMotion<State<M>::dim>& node) {
   constexpr int dim = State<M>::dim;
   const Real dt = state.dt;
   const bool has_solid = is_rigid<M> ? sums.has_soil : node.solid_mass > 0;
@@ -337,9 +357,9 @@ void advance_pair(const State<M>& state, const NodeSums<State<M>::dim>& sums, Re
     const Real r_l = a * node.liquid[d] + dt * node.liquid_force[d];
     const Real r_s = b * node.solid[d] + dt * node.solid_force[d];
     const Real q = dt * linear[d] * factor;
-    const bool fixed = is_rigid<M> || (flags & (node_flag::solid_fixed << d)) != 0;
+    const bool fixed = is_finite(prescribed[d]);
     if (fixed)
-      node.solid[d] = 0;
+      node.solid[d] = prescribed[d];
     else if (has_solid)
       node.solid[d] = r_s / b;
     if (has_water) node.liquid[d] = (r_l + q * node.solid[d]) / (a + q);
@@ -456,7 +476,9 @@ void advance_node(State<M>& state, const CellView<M>& view) {
   }
   if (state.options.damping > 0 && node.solid_mass > 0) damp(state.options.damping, node);
   if constexpr (has_liquid<M> && has_skeleton<M>) {
-    advance_pair(state, sums, porosity, skeleton_volume, flags, node);
+    Real prescribed[dim];
+    find_prescribed(state, view.entry(), flags, prescribed);
+    advance_pair(state, sums, porosity, skeleton_volume, prescribed, node);
   } else {
     for (int d = 0; d < dim; ++d) {
       if (node.solid_mass > 0) node.solid[d] += state.dt * node.solid_force[d] / node.solid_mass;
