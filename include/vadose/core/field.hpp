@@ -99,7 +99,8 @@ struct Sized {
   static constexpr int components = Components;
 };
 
-/// The fields of a point set, in storage order.
+/// The fields of a point set, in storage order. A host's own fields ride along with the points of
+/// a model that names them (see DryModel): a tag with name and unit, and its number of components.
 template <class... Fields>
 struct FieldSet {
   /// Doubles per point.
@@ -132,5 +133,20 @@ struct FieldSet {
     ((Fields::components > 0 ? f(typename Fields::tag{}, Fields::components) : void()), ...);
   }
 };
+
+namespace detail {
+
+template <class A, class B>
+struct JoinedFields;
+template <class... A, class... B>
+struct JoinedFields<FieldSet<A...>, FieldSet<B...>> {
+  using type = FieldSet<A..., B...>;
+};
+
+}  // namespace detail
+
+/// The fields of A, then those of B.
+template <class A, class B>
+using JoinFields = typename detail::JoinedFields<A, B>::type;
 
 }  // namespace vadose

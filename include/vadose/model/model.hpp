@@ -10,6 +10,7 @@
 
 #include <type_traits>
 
+#include <vadose/core/field.hpp>
 #include <vadose/core/kinematics.hpp>
 #include <vadose/policy/conductivity/constant.hpp>
 #include <vadose/policy/conductivity/kozeny_carman.hpp>
@@ -43,6 +44,8 @@ struct DryModel {
   using Retention = swrc::AlwaysSaturated;      ///< soil-water retention curve
   using Conductivity = conductivity::Constant;  ///< hydraulic conductivity
   using Drag = drag::Darcy;                     ///< force between liquid and skeleton
+  using SolidUserFields = FieldSet<>;   ///< the host's own fields of solid points, 0 at first
+  using LiquidUserFields = FieldSet<>;  ///< the same of liquid points
 };
 
 /// Soil whose pores are full, and free water.
