@@ -6,6 +6,7 @@
 
 #include <cstdint>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include <vadose/core/aligned.hpp>
@@ -99,6 +100,32 @@ class PointSet {
     at(field::mass, batch)[lane] = 0;
     at(field::volume, batch)[lane] = 0;
     --size_;
+  }
+
+  /// A set as it is stored, for files: batches with their unused lanes, blocks, waiting points.
+  struct Storage {
+    AlignedVector<double> values;          ///< stride per batch
+    std::vector<std::uint8_t> groups;      ///< one per batch
+    std::vector<BatchRange> blocks;        ///< one after the other, all batches
+    std::vector<double> new_values;        ///< Fields::total per waiting point
+    std::vector<std::uint8_t> new_groups;  ///< one per waiting point
+  };
+  /// The values of all batches and of the waiting points, and the groups of both.
+  const AlignedVector<double>& values() const noexcept { return data_; }
+  const std::vector<std::uint8_t>& groups() const noexcept { return group_; }
+  const std::vector<double>& new_values() const noexcept { return new_values_; }
+  const std::vector<std::uint8_t>& new_groups() const noexcept { return new_groups_; }
+
+  /// Puts a stored set back; the grid must have the blocks it was stored with.
+  void restore(const BlockGrid<Dim>& grid, Storage&& stored) {
+    data_ = std::move(stored.values);
+    group_ = std::move(stored.groups);
+    blocks_ = std::move(stored.blocks);
+    new_values_ = std::move(stored.new_values);
+    new_groups_ = std::move(stored.new_groups);
+    size_ = 0;
+    for_each([&](std::size_t, int) { ++size_; });
+    list_layers(grid);
   }
 
   /// Marks in `occupied` (one entry per block number) the blocks that hold points.

@@ -24,12 +24,14 @@ class WaterBalanceHistory {
                         {"water_rain", "kg"},
                         {"water_film", "kg"},
                         {"water_lost", "kg"},
+                        {"water_added", "kg"},
                         {"pore_water", "kg"},
                         {"free_water", "kg"},
                         {"water_closure", "kg"},
                         {"water_relative_closure", "-"},
                         {"solid_initial", "kg"},
                         {"solid_lost", "kg"},
+                        {"solid_added", "kg"},
                         {"solid_stored", "kg"},
                         {"solid_closure", "kg"},
                         {"solid_relative_closure", "-"}}) {}
@@ -39,9 +41,9 @@ class WaterBalanceHistory {
   void record(const S& solver) {
     const WaterBalance w = solver.water_balance();
     const SolidBalance s = solver.solid_balance();
-    history_.add({solver.time(), w.initial, w.inflow, w.outflow, w.rain, w.film, w.lost, w.pore,
-                  w.free, w.closure(), w.relative_closure(), s.initial, s.lost, s.stored,
-                  s.closure(), s.relative_closure()});
+    history_.add({solver.time(), w.initial, w.inflow, w.outflow, w.rain, w.film, w.lost, w.added,
+                  w.pore, w.free, w.closure(), w.relative_closure(), s.initial, s.lost, s.added,
+                  s.stored, s.closure(), s.relative_closure()});
   }
 
   const std::string& path() const noexcept { return history_.path(); }

@@ -58,15 +58,17 @@ void print_summary(std::FILE* out, const S& solver) {
                solver.liquid().size());
   const WaterBalance w = solver.water_balance();
   std::fprintf(out,
-               "  water    %.6g kg at the start, %.6g rain, %.6g in, %.6g out, %.6g left the box; "
-               "now %.6g in pores, %.6g free, %.6g on the ground; closure %.2g kg (%.2g)\n",
-               w.initial, w.rain, w.inflow, w.outflow, w.lost, w.pore, w.free, w.film, w.closure(),
-               w.relative_closure());
+               "  water    %.6g kg at the start, %.6g rain, %.6g in, %.6g out, %.6g left the box, "
+               "%.6g by the host; now %.6g in pores, %.6g free, %.6g on the ground; closure %.2g "
+               "kg (%.2g)\n",
+               w.initial, w.rain, w.inflow, w.outflow, w.lost, w.added, w.pore, w.free, w.film,
+               w.closure(), w.relative_closure());
   const SolidBalance s = solver.solid_balance();
   std::fprintf(out,
-               "  grains   %.6g kg at the start, %.6g left the box; now %.6g; closure %.2g kg "
+               "  grains   %.6g kg at the start, %.6g left the box, %.6g by the host; now %.6g; "
+               "closure %.2g kg "
                "(%.2g)\n",
-               s.initial, s.lost, s.stored, s.closure(), s.relative_closure());
+               s.initial, s.lost, s.added, s.stored, s.closure(), s.relative_closure());
 }
 
 /// The same with wall time, and its share per point and step, since `clock` was started.

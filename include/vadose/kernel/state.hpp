@@ -200,6 +200,8 @@ struct State {
   CompensatedSum lost_water;             ///< that left the box with its points [kg]
   CompensatedSum lost_solid;             ///< the same of the grains [kg]
   CompensatedSum rain;                   ///< fallen so far [kg]
+  CompensatedSum added_water;            ///< put in less taken out by the host [kg]
+  CompensatedSum added_solid;            ///< the same of the grains [kg]
   std::int64_t next_liquid_id = 0;       ///< of the next liquid point
 
   AlignedVector<kernel::Tile<dim>> tiles;  ///< two per thread

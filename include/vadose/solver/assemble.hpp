@@ -48,13 +48,13 @@ void set_common(PointValues<Fields>& p, const SeedPoint<M::Kinematics::dim>& see
   }
 }
 
-/// Solid and pore-water points of one body of soil. Each water point starts where a solid point
-/// is and stays there.
+/// Solid and pore-water points of one body of soil, as points of soil `group`. Each water point
+/// starts where a solid point is and stays there.
 /// DEVIATION: [Zhan] has no liquid points in dry soil; here they are there without mass, so that none
 /// need be created at a wetting front.
 template <class M>
 void seed_soil(State<M>& state, const Scene<M>& scene, const InitialState<M>& initial, int index,
-               std::int64_t& next_solid, std::int64_t& next_liquid) {
+               int group, std::int64_t& next_solid, std::int64_t& next_liquid) {
   const auto& body = scene.soils()[static_cast<std::size_t>(index)];
   const Material<M> material = scene.material(body.material);
   const Real spacing = scene.cell_size() / body.lattice.per_axis;
@@ -71,7 +71,7 @@ void seed_soil(State<M>& state, const Scene<M>& scene, const InitialState<M>& in
     const auto numbers = law::initial_state(material.skeleton);
     for (std::size_t i = 0; i < numbers.size(); ++i)
       solid.set(field::law_state, numbers[i], static_cast<int>(i));
-    state.solid.append(solid.all(), body.material);
+    state.solid.append(solid.all(), group);
     if constexpr (has_liquid<M>) {
       PointValues<LiquidFields<M>> liquid;
       set_common<M>(liquid, seed, body.options.velocity, spacing, next_liquid++);
@@ -81,7 +81,7 @@ void seed_soil(State<M>& state, const Scene<M>& scene, const InitialState<M>& in
       liquid.set(field::mass, body.options.dry ? 0 : state.water.density * volume * theta.value);
       liquid.set(field::porosity, material.porosity);
       liquid.set(field::liquid_pressure, p);
-      state.liquid.append(liquid.all(), body.material);
+      state.liquid.append(liquid.all(), group);
     }
   }
 }
@@ -290,7 +290,8 @@ void assemble(State<M>& state, const Scene<M>& scene) {
   std::int64_t next_solid = 0, next_liquid = 0;
   if constexpr (has_skeleton<M>) {
     for (std::size_t i = 0; i < scene.soils().size(); ++i)
-      seed_soil(state, scene, initial, static_cast<int>(i), next_solid, next_liquid);
+      seed_soil(state, scene, initial, static_cast<int>(i), scene.soils()[i].material, next_solid,
+                next_liquid);
   }
   if constexpr (has_liquid<M>) {
     for (std::size_t i = 0; i < scene.waters().size(); ++i)

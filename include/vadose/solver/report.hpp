@@ -4,6 +4,7 @@
 /// \file
 /// What a step and a run report.
 
+#include <cmath>
 #include <cstdint>
 #include <stdexcept>
 #include <string>
@@ -62,14 +63,16 @@ struct WaterBalance {
   Real free = 0;     ///< stored as free water now
   Real film = 0;     ///< on the ground, not points yet
   Real lost = 0;     ///< left with points that left the box
+  Real added = 0;    ///< put in less taken out by the host between steps
 
   /// Stored now less what must be there [kg].
   Real closure() const noexcept {
-    return pore + free + film - (initial + rain + inflow - outflow - lost);
+    return pore + free + film - (initial + added + rain + inflow - outflow - lost);
   }
   /// Closure over the largest quantity in the balance [-].
   Real relative_closure() const noexcept {
-    const Real scale = max(max(initial, max(rain, inflow)), max(outflow, pore + free + film));
+    const Real scale = max(max(max(initial, std::fabs(added)), max(rain, inflow)),
+                           max(outflow, pore + free + film));
     return scale > 0 ? closure() / scale : 0;
   }
 };
@@ -79,8 +82,13 @@ struct SolidBalance {
   Real initial = 0;
   Real stored = 0;
   Real lost = 0;
-  Real closure() const noexcept { return stored - (initial - lost); }
-  Real relative_closure() const noexcept { return initial > 0 ? closure() / initial : 0; }
+  Real added = 0;  ///< put in less taken out by the host between steps
+  Real closure() const noexcept { return stored - (initial + added - lost); }
+  /// Closure over the larger of what was and what is there [-].
+  Real relative_closure() const noexcept {
+    const Real scale = max(initial, stored);
+    return scale > 0 ? closure() / scale : 0;
+  }
 };
 
 }  // namespace vadose

@@ -6,8 +6,10 @@
 
 #include <chrono>
 #include <string>
+#include <utility>
 #include <vector>
 
+#include <vadose/solver/add_bodies.hpp>
 #include <vadose/solver/assemble.hpp>
 #include <vadose/solver/escaped_points.hpp>
 #include <vadose/solver/gather_films.hpp>
@@ -81,6 +83,14 @@ struct Estimate {
   }
 };
 
+/// What a run remembers besides its state.
+struct RunMemory {
+  std::vector<Real> start;  ///< position of every solid point at the start, by id [m]
+  Real initial_water = 0;   ///< [kg]
+  Real initial_solid = 0;   ///< [kg]
+  StepReport last;          ///< of the last step
+};
+
 /// A run of model M. Construction checks the scene and throws SetupError; nothing is half built.
 template <class M, class Scheme = scheme::Explicit>
 class Solver {
@@ -146,12 +156,18 @@ class Solver {
       detail::gather_films(state_);
       detail::release_films(state_);
     }
-    last_ = report;
+    memory_.last = report;
     return report;
   }
 
   /// Steps to time t [s] exactly; throws InstabilityError with the report of a failed step.
   void advance_to(Real t) {
+    advance_to(t, [](const StepReport&) {});
+  }
+  /// The same; calls after_step(report) after every good step. It may change what the host may
+  /// change between steps.
+  template <class F>
+  void advance_to(Real t, F&& after_step) {
     while (state_.time < t) {
       // A remainder below round-off is no step.
       if (t - state_.time <= 1e-14 * std::fabs(t)) {
@@ -160,11 +176,12 @@ class Solver {
       }
       const StepReport report = step(t);
       if (report.status != Status::ok) throw InstabilityError(report);
+      after_step(report);
     }
   }
 
   /// Report of the last step.
-  const StepReport& last_step() const noexcept { return last_; }
+  const StepReport& last_step() const noexcept { return memory_.last; }
 
   /// Brings the skeleton to rest under gravity and loads with the liquid state held: pressures
   /// stay, no water moves. Afterwards velocities, time and displacements are zero and the water
@@ -198,7 +215,8 @@ class Solver {
   /// Water ledger [kg].
   WaterBalance water_balance() const {
     WaterBalance b;
-    b.initial = initial_water_;
+    b.initial = memory_.initial_water;
+    b.added = state_.added_water;
     for (const auto& h : state_.held) {
       b.inflow += h.inflow;
       b.outflow += h.outflow;
@@ -213,7 +231,8 @@ class Solver {
   /// Ledger of the grains [kg].
   SolidBalance solid_balance() const {
     SolidBalance b;
-    b.initial = initial_solid_;
+    b.initial = memory_.initial_solid;
+    b.added = state_.added_solid;
     b.lost = state_.lost_solid;
     state_.solid.for_each(
         [&](std::size_t i, int l) { b.stored += state_.solid.at(field::mass, i)[l]; });
@@ -247,7 +266,7 @@ class Solver {
     Vec<dim> u;
     for (int d = 0; d < dim; ++d)
       u[d] = state_.solid.at(field::position, batch, d)[lane] -
-             start_[id * dim + static_cast<std::size_t>(d)];
+             memory_.start[id * dim + static_cast<std::size_t>(d)];
     return u;
   }
 
@@ -255,7 +274,57 @@ class Solver {
   void reset_balances() {
     for (auto& h : state_.held) h.inflow = h.outflow = {};
     state_.rain = state_.lost_water = state_.lost_solid = {};
+    state_.added_water = state_.added_solid = {};
     count_initial();
+  }
+
+  /// Puts in the soil and the water of another scene with the same box and cells, between steps.
+  /// Its materials must be those of this run, by name. Counted as `added` in the ledgers; its
+  /// conditions are not looked at. Where the points go should be empty. Raises SetupError and
+  /// leaves the run as it was.
+  PointCount add_points(const Scene<M>& more) {
+    more.validate();
+    const std::vector<int> groups = detail::groups_of(state_, more);
+    const Real solid_before = stored_solid(), water_before = stored_water();
+    const std::size_t first = memory_.start.size() / dim;
+    const PointCount added = detail::append_bodies(state_, more, groups, first);
+    sort();
+    memory_.start.resize(memory_.start.size() + added.solid * dim, 0);
+    state_.solid.for_each([&](std::size_t b, int l) {
+      if (state_.solid.at(field::id, b)[l] >= static_cast<Real>(first)) remember_start(b, l);
+    });
+    start_wave_speed();
+    state_.added_solid += stored_solid() - solid_before;
+    state_.added_water += stored_water() - water_before;
+    return added;
+  }
+
+  /// Takes the points of both phases in a region out, between steps, and the loads there. Counted
+  /// as `added` < 0 in the ledgers.
+  PointCount remove_points(const Region<dim>& region) {
+    const Real solid_before = stored_solid(), water_before = stored_water();
+    PointCount removed;
+    if constexpr (has_skeleton<M>) removed.solid = detail::remove_points(state_.solid, region);
+    if constexpr (has_liquid<M>) removed.liquid = detail::remove_points(state_.liquid, region);
+    std::erase_if(state_.loads, [&](const auto& load) { return region.contains(load.position); });
+    sort();
+    state_.added_solid += stored_solid() - solid_before;
+    state_.added_water += stored_water() - water_before;
+    return removed;
+  }
+
+  /// What the run remembers besides its state.
+  const RunMemory& memory() const noexcept { return memory_; }
+
+  /// Puts an earlier state back (see io::load_checkpoint): f(state, memory, make_blocks) changes a
+  /// copy that takes the place of this run when f returns; make_blocks(occupied) makes the grid
+  /// around the occupied blocks. Where f throws, nothing has changed.
+  template <class F>
+  void restore(F&& f) {
+    Solver next = *this;
+    f(next.state_, next.memory_,
+      [&](const std::vector<char>& occupied) { next.make_blocks(occupied); });
+    *this = std::move(next);
   }
 
   /// Direct access for hosts that couple their own code to a run; keep the state consistent.
@@ -299,14 +368,18 @@ class Solver {
     std::vector<char> occupied(state_.grid.block_count(), 0);
     state_.solid.mark_blocks(state_.grid, occupied);
     if constexpr (has_liquid<M>) state_.liquid.mark_blocks(state_.grid, occupied);
-    state_.grid.rebuild(occupied);
+    make_blocks(occupied);
     const int groups = static_cast<int>(state_.soils.size()) + 1;
     state_.solid.sort(state_.grid, groups);
     if constexpr (has_liquid<M>) state_.liquid.sort(state_.grid, groups);
-    resize_grid();
-    detail::flag_nodes(state_, walls_);
     find_films();
     state_.slack = 0;
+  }
+  /// Makes the blocks around the occupied ones, their arrays and walls.
+  void make_blocks(const std::vector<char>& occupied) {
+    state_.grid.rebuild(occupied);
+    resize_grid();
+    detail::flag_nodes(state_, walls_);
   }
 
   /// Whether there may be films on the ground.
@@ -339,12 +412,15 @@ class Solver {
   }
 
   void remember_start() {
-    start_.assign(state_.solid.size() * dim, 0);
-    state_.solid.for_each([&](std::size_t b, int l) {
-      const auto id = static_cast<std::size_t>(state_.solid.at(field::id, b)[l]);
-      for (int d = 0; d < dim; ++d)
-        start_[id * dim + static_cast<std::size_t>(d)] = state_.solid.at(field::position, b, d)[l];
-    });
+    memory_.start.assign(memory_.start.empty() ? state_.solid.size() * dim : memory_.start.size(),
+                         0);
+    state_.solid.for_each([&](std::size_t b, int l) { remember_start(b, l); });
+  }
+  void remember_start(std::size_t batch, int lane) {
+    const auto id = static_cast<std::size_t>(state_.solid.at(field::id, batch)[lane]);
+    for (int d = 0; d < dim; ++d)
+      memory_.start[id * dim + static_cast<std::size_t>(d)] =
+          state_.solid.at(field::position, batch, d)[lane];
   }
 
   /// Speed of sound in the dry skeleton and of the points, for the first step.
@@ -376,8 +452,14 @@ class Solver {
     Real pore = 0, free = 0;
     sum_water(pore, free);
     for (const auto& column : state_.columns) free += column.film;
-    initial_water_ = pore + free;
-    initial_solid_ = solid_balance().stored;
+    memory_.initial_water = pore + free;
+    memory_.initial_solid = solid_balance().stored;
+  }
+  Real stored_solid() const { return solid_balance().stored; }
+  Real stored_water() const {
+    Real pore = 0, free = 0;
+    sum_water(pore, free);
+    return pore + free;
   }
   void sum_water([[maybe_unused]] Real& pore, [[maybe_unused]] Real& free) const {
     if constexpr (has_liquid<M>)
@@ -454,9 +536,7 @@ class Solver {
 
   State<M> state_;
   detail::Walls<dim> walls_;
-  std::vector<Real> start_;
-  Real initial_water_ = 0, initial_solid_ = 0;
-  StepReport last_;
+  RunMemory memory_;
 };
 
 }  // namespace vadose
