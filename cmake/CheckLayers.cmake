@@ -3,7 +3,7 @@
 #   cmake -D SOURCE_DIR=<repository> -P cmake/CheckLayers.cmake
 cmake_minimum_required(VERSION 3.25)
 
-set(layers core grid policy model kernel scene solver io)
+set(layers core grid policy model kernel scene solver io testing)
 set(errors "")
 file(GLOB_RECURSE headers RELATIVE "${SOURCE_DIR}/include" "${SOURCE_DIR}/include/vadose/*.hpp")
 

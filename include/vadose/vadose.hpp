@@ -25,9 +25,12 @@
 #include <vadose/grid/region.hpp>
 #include <vadose/io/advance.hpp>
 #include <vadose/io/balance_history.hpp>
+#include <vadose/io/checkpoint.hpp>
+#include <vadose/io/checkpoint_file.hpp>
 #include <vadose/io/file.hpp>
 #include <vadose/io/gauges.hpp>
 #include <vadose/io/history.hpp>
+#include <vadose/io/model_fingerprint.hpp>
 #include <vadose/io/progress.hpp>
 #include <vadose/io/pvd_series.hpp>
 #include <vadose/io/run_summary.hpp>
@@ -87,6 +90,7 @@
 #include <vadose/scene/boundary.hpp>
 #include <vadose/scene/initial_state.hpp>
 #include <vadose/scene/scene.hpp>
+#include <vadose/solver/add_bodies.hpp>
 #include <vadose/solver/assemble.hpp>
 #include <vadose/solver/escaped_points.hpp>
 #include <vadose/solver/gather_films.hpp>

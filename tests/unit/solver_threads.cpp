@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: MIT
 
 // A run has the same bits for one, two and three threads. (Without OpenMP in the build the loops
-// run in one thread and the test says nothing.)
+// run in one thread and the test says nothing.) So has a run that is saved and taken up again.
 
 #include <doctest/doctest.h>
 
 #include "kernel_support.hpp"
+#include "restart_support.hpp"
 
 namespace {
 
@@ -35,6 +36,7 @@ void check_same_bits(const vadose::Scene<M>& scene, int steps, Real courant = 0.
     for (const auto& [id, values] : liquid) different += !same_bits(values, l.at(id));
     CHECK(different == 0);
   }
+  restart_test::check_restart<vadose::Solver<M>>(scene, {.courant = courant}, steps / 2, steps / 4);
 }
 
 }  // namespace

@@ -4,6 +4,9 @@
 /// \file
 /// Output files whose every failure is told with path and reason.
 
+#include <fcntl.h>
+#include <unistd.h>
+
 #include <cerrno>
 #include <cstdarg>
 #include <cstdio>
@@ -19,6 +22,12 @@ namespace vadose::io {
 
 /// Thrown when something cannot be written; the message has the path and the system's reason.
 class OutputError : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+/// Thrown when something cannot be read; the message has the path and what is wrong.
+class InputError : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
 };
@@ -84,6 +93,13 @@ class File {
     if (std::fflush(file_) != 0) fail("write");
   }
 
+  /// Hands everything written so far to the disk: it outlives a power failure.
+  void sync() {
+    flush();
+    errno = 0;
+    if (::fsync(::fileno(file_)) != 0) fail("write");
+  }
+
   /// Writes what is buffered and closes; a second call does nothing.
   void close() {
     if (!file_) return;
@@ -122,16 +138,27 @@ class ReplacingFile {
 
   File& file() noexcept { return file_; }
 
-  /// Closes the new content and puts it at `path`.
-  void commit() {
+  /// Closes the new content and puts it at `path`. Durable: on the disk before it takes its place.
+  void commit(bool durable = false) {
+    if (durable) file_.sync();
     file_.close();
     std::error_code code;
     std::filesystem::rename(file_.path(), path_, code);
     if (code) throw OutputError("cannot write file '" + path_ + "': " + code.message());
     done_ = true;
+    if (durable) sync_directory();
   }
 
  private:
+  /// The new name outlives a power failure too, where directories can be synchronised.
+  void sync_directory() const noexcept {
+    const std::string parent = std::filesystem::path(path_).parent_path().string();
+    const int directory = ::open(parent.empty() ? "." : parent.c_str(), O_RDONLY);
+    if (directory < 0) return;
+    ::fsync(directory);
+    ::close(directory);
+  }
+
   std::string path_;
   File file_;
   bool done_ = false;
