@@ -35,6 +35,7 @@
 #include <vadose/io/pvd_series.hpp>
 #include <vadose/io/run_summary.hpp>
 #include <vadose/io/sample.hpp>
+#include <vadose/io/vtk_grid.hpp>
 #include <vadose/io/vtk_points.hpp>
 #include <vadose/io/vtk_series.hpp>
 #include <vadose/kernel/batch.hpp>

@@ -2,6 +2,9 @@
 // .vtp and .pvd files are read back by a parser of their own and compared bit for bit.
 
 #include <doctest/doctest.h>
+#include <signal.h>
+#include <sys/wait.h>
+#include <unistd.h>
 #include <bit>
 #include <cmath>
 #include <cstdint>
@@ -14,6 +17,7 @@
 #include <vector>
 
 #include <vadose/io/pvd_series.hpp>
+#include <vadose/io/vtk_grid.hpp>
 #include <vadose/io/vtk_points.hpp>
 
 #include "../error_message.hpp"
@@ -234,4 +238,109 @@ TEST_CASE("vtk: the series is listed and valid after every write") {
   CHECK(error_message<io::OutputError>([] {
           io::PvdSeries{"some/directory/"};
         }).find("no file name") != std::string::npos);
+}
+
+namespace {
+
+/// Every file that a .pvd file lists is there and whole; returns how many.
+std::size_t check_series(const std::string& pvd) {
+  const std::string text = content(pvd);
+  if (text.empty()) return 0;  // killed before the first write
+  REQUIRE(text.size() > 24);
+  CHECK(text.substr(text.size() - 25) == "</Collection>\n</VTKFile>\n");
+  std::size_t count = 0;
+  for (std::size_t at = 0; (at = text.find("<DataSet", at)) != std::string::npos; ++at, ++count) {
+    const std::string file =
+        content((std::filesystem::path(pvd).parent_path() / attribute(text, at, "file")).string());
+    REQUIRE(file.size() > 28);
+    CHECK(file.substr(file.size() - 28) == "\n</AppendedData>\n</VTKFile>\n");
+    CHECK(read_arrays(file).size() == 4);
+  }
+  return count;
+}
+
+}  // namespace
+
+TEST_CASE("vtk: a series is valid whenever the run is killed, and a later run goes on with it") {
+  const std::vector<Real> x(3000, 0.5);
+  const std::vector<io::Column> columns = {{"mass [kg]", 1, x}};
+  std::size_t written = 0;
+  for (unsigned kill_after = 4; kill_after <= 40; kill_after += 6) {  // [ms]
+    const TemporaryDirectory directory("vtk_killed", true);
+    const pid_t child = fork();
+    REQUIRE(child >= 0);
+    if (child == 0) {
+      io::PvdSeries series(directory / "run");
+      for (int i = 0; i < 100000; ++i) series.write(i, 1, x, columns);
+      _exit(0);
+    }
+    usleep(1000 * kill_after);
+    REQUIRE(kill(child, SIGKILL) == 0);
+    int status = 0;
+    REQUIRE(waitpid(child, &status, 0) == child);
+    const std::size_t before = check_series(directory / "run.pvd");
+    written += before;
+    io::PvdSeries series(directory / "run");
+    series.resume(2.5);
+    CHECK(series.size() == std::min<std::size_t>(before, 3));
+    series.write(3, 1, x, columns);
+    CHECK(check_series(directory / "run.pvd") == std::min<std::size_t>(before, 3) + 1);
+  }
+  MESSAGE("files written by the runs that were killed: ", written);
+  CHECK(written > 0);
+}
+
+TEST_CASE("vtk: after a write that fails the series is as it was and can go on") {
+  const TemporaryDirectory directory("vtk_full", true);
+  const std::vector<Real> x = {0.5};
+  io::PvdSeries series(directory / "run");
+  series.write(0, 1, x, {});
+  const std::string listed = content(directory / "run.pvd");
+  const auto failure = [&] {
+    return error_message<io::OutputError>([&] { series.write(1, 1, x, {}); });
+  };
+  // A full disk, first for the points, then for the list.
+  std::filesystem::create_symlink("/dev/full", directory / "run_000001.vtp.part");
+  CHECK(failure() ==
+        "cannot write file '" + (directory / "run_000001.vtp.part") + "': No space left on device");
+  std::filesystem::create_symlink("/dev/full", directory / "run.pvd.part");
+  CHECK(failure() ==
+        "cannot write file '" + (directory / "run.pvd.part") + "': No space left on device");
+  CHECK(content(directory / "run.pvd") == listed);
+  CHECK(series.size() == 1);
+  // A path that cannot be written.
+  std::filesystem::create_directory(directory / "run_000001.vtp.part");
+  CHECK(failure().find("cannot open file '") == 0);
+  std::filesystem::remove(directory / "run_000001.vtp.part");
+  series.write(1, 1, x, {});
+  CHECK(series.size() == 2);
+  const io::PvdSeries none("/dev/null/run");
+  CHECK(error_message<io::OutputError>([&] {
+          io::PvdSeries(none).write(0, 1, x, {});
+        }).find("cannot create directory '/dev/null'") == 0);
+}
+
+TEST_CASE("vtk: cells and nodes of a part of a grid read back bit for bit") {
+  const TemporaryDirectory directory("vtk_grid", true);
+  const io::GridPart part{
+      .origin = {1, 2, 0}, .cell_size = 0.5, .low = {2, 1, 0}, .high = {4, 2, 1}, .dim = 2};
+  CHECK(part.count(false) == 2);
+  CHECK(part.count(true) == 6);
+  const std::vector<io::Column> cells = {{"cell_pressure [Pa]", 1, {awkward[0], awkward[6]}}};
+  const std::vector<io::Column> nodes = {
+      {"velocity [m/s]", 1, {awkward.begin(), awkward.begin() + 6}}};
+  io::write_vti(directory / "grid.vti", part, cells, nodes, "cells");
+  const std::string text = content(directory / "grid.vti");
+  const std::size_t image = text.find("<ImageData");
+  CHECK(attribute(text, image, "WholeExtent") == "2 4 1 2 0 0");
+  CHECK(attribute(text, image, "Origin") == "1 2 0");
+  CHECK(attribute(text, image, "Spacing") == "0.5 0.5 0.5");
+  CHECK(attribute(text, text.find("<Piece"), "Extent") == "2 4 1 2 0 0");
+  const auto arrays = read_arrays(text);
+  REQUIRE(arrays.size() == 2);
+  // The nodes come first in the head; their bytes lie behind those of the cells.
+  CHECK(arrays[0].name == "velocity [m/s]");
+  CHECK(same_bits(values<Real>(arrays[0]), nodes[0].values));
+  CHECK(same_bits(values<Real>(arrays[1]), cells[0].values));
+  CHECK_THROWS_AS(io::write_vti(directory / "grid.vti", part, nodes, cells), io::OutputError);
 }

@@ -2,9 +2,11 @@
 // Series of point files written from a solver, read back and compared with the solver's state.
 
 #include <doctest/doctest.h>
+#include <sys/wait.h>
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <cstdlib>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
@@ -64,8 +66,13 @@ std::map<std::string, SeriesColumn> read_columns(const std::string& path) {
   return columns;
 }
 
+struct Salt {
+  static constexpr const char* name = "salt";
+  static constexpr const char* unit = "g/kg";
+};
 struct WetSoil : UnsaturatedModel<PlaneStrain> {
   using Skeleton = law::DruckerPrager;
+  using LiquidUserFields = FieldSet<Sized<Salt, 1>>;
 };
 
 /// Two soils of different suction, and a pool beside them; the widths leave unused lanes.
@@ -247,6 +254,53 @@ TEST_CASE("vtk series: columns by name, and a phase that is not there gets no fi
     CHECK(liquid.at("kind [-]").at(i) == 1);
   }
   CHECK_FALSE(std::filesystem::exists(directory / "water_solid.pvd"));
+}
+
+TEST_CASE("vtk series: cells and nodes of the grid, and the host's own fields") {
+  const TemporaryDirectory directory("series_grid");
+  Solver<WetSoil> solver = wet_solver();
+  solver.mutable_state().liquid.at(Salt{}, 0)[0] = 35;
+  for (int i = 0; i < 5; ++i) REQUIRE(solver.step().status == Status::ok);
+  io::VtkSeries series{directory / "wet", {}, io::VtkSeries::Grid::yes};
+  series.write(solver);
+  const auto liquid = read_columns(directory / "wet_liquid_000000.vtp");
+  const auto& salt = liquid.at("salt [g/kg]").values;
+  CHECK(std::count(salt.begin(), salt.end(), 35.0) == 1);
+  CHECK(std::count(salt.begin(), salt.end(), 0.0) == static_cast<long>(salt.size()) - 1);
+  // 10 x 5 cells in two blocks: the box
+  const auto grid = read_columns(directory / "wet_grid_000000.vti");
+  const auto& state = solver.state();
+  const auto& pressure = grid.at("cell_pressure [Pa]").values;
+  const auto& velocity = grid.at("solid_velocity [m/s]").values;
+  REQUIRE(pressure.size() == 50);
+  REQUIRE(velocity.size() == 3 * 66);
+  int wrong = 0, filled = 0;
+  for (int y = 0; y < 5; ++y)
+    for (int x = 0; x < 10; ++x) {
+      const auto entry = static_cast<std::size_t>(state.grid.entry({{x, y}}));
+      const Real value = pressure[static_cast<std::size_t>(y * 10 + x)];
+      wrong += (state.nodes.dof[entry] < 0) != std::isnan(value);
+      filled += !std::isnan(value);
+      const auto node = static_cast<std::size_t>(3 * (y * 11 + x));
+      wrong += velocity[node + 1] != state.nodes.solid_out[entry][lane::velocity + 1];
+    }
+  CHECK(wrong == 0);
+  CHECK(filled == 3 * 3 + 3 * 2 + 4);
+  CHECK(grid.at("cell_kind [-]").values[9] == 1);
+  CHECK(grid.at("cell_kind [-]").values[0] == 0);
+  CHECK(file_text(directory / "wet_grid.pvd").find("wet_grid_000000.vti") != std::string::npos);
+
+  // VTK's own reader, where there is one.
+  const std::string script = std::filesystem::path(__FILE__).replace_filename("read_with_vtk.py");
+  int result = 77;
+  for (const std::string python : {"python3", "/usr/bin/python3"})
+    if (result == 77 || result == 127)
+      result = WEXITSTATUS(
+          std::system((python + " '" + script + "' '" + directory.path.string() + "'").c_str()));
+  if (result == 77 || result == 127)
+    MESSAGE("VTK's reader (package python3-vtk9) is not installed: skipped");
+  else
+    CHECK(result == 0);
 }
 
 TEST_CASE("vtk series: the solver named by its policies is that of its positional model") {

@@ -2,10 +2,12 @@
 #pragma once
 
 /// \file
-/// A series of .vtp files over time, listed in a .pvd file that ParaView opens.
+/// A series of VTK files over time, listed in a .pvd file that ParaView opens.
 
 #include <cstdio>
+#include <cstdlib>
 #include <filesystem>
+#include <fstream>
 #include <span>
 #include <string>
 #include <string_view>
@@ -19,11 +21,15 @@
 namespace vadose::io {
 
 /// Time series "<base>.pvd" of "<base>_000000.vtp", "<base>_000001.vtp", ... The .pvd file is
-/// complete and valid after every write. Nothing is written before the first one.
+/// complete and valid after every write, also when the run is killed in the middle of one. Nothing
+/// is written before the first one. After an OutputError the series is as it was: the run can go on
+/// and the next write may succeed.
 class PvdSeries {
  public:
   /// `base`: path without extension, e.g. "out/slope".
-  explicit PvdSeries(std::string base) : base_(std::move(base)) {
+  /// `extension`: of the files in the series.
+  explicit PvdSeries(std::string base, std::string extension = ".vtp")
+      : base_(std::move(base)), extension_(std::move(extension)) {
     if (std::filesystem::path(base_).filename().empty())
       throw OutputError("cannot write file '" + base_ + ".pvd': the path has no file name");
   }
@@ -31,17 +37,39 @@ class PvdSeries {
   /// Writes the points at time [s] and lists them. See write_vtp.
   void write(Real time, int dim, std::span<const Real> positions, std::span<const Column> columns,
              std::string_view comment = {}) {
+    add(time, [&](const std::string& file) { write_vtp(file, dim, positions, columns, comment); });
+  }
+
+  /// Has write_file(path) write the next file and lists it at time [s].
+  template <class F>
+  void add(Real time, F&& write_file) {
     check_time(time);
     const std::string file = next_file();
-    write_vtp(file, dim, positions, columns, comment);
+    write_file(file);
     list(time, file);
   }
 
-  /// Path of the next .vtp file.
+  /// Takes up the series that an earlier run left at this path: what it lists until time [s] stays,
+  /// what is later is forgotten and its files are replaced. Nothing happens where there is none.
+  void resume(Real time) {
+    std::ifstream in(path());
+    entries_.clear();
+    for (std::string line; std::getline(in, line);) {
+      const std::string start = "<DataSet timestep=\"", middle = "\" part=\"0\" file=\"";
+      const std::size_t at = line.find(middle);
+      if (line.rfind(start, 0) != 0 || at == std::string::npos) continue;
+      const Real written = std::strtod(line.c_str() + start.size(), nullptr);
+      if (written > time) break;
+      const std::string file = next_file();
+      entries_.emplace_back(written, std::filesystem::path(file).filename().string());
+    }
+  }
+
+  /// Path of the next file.
   std::string next_file() const {
     char number[32];
-    std::snprintf(number, sizeof number, "_%06zu.vtp", entries_.size());
-    return base_ + number;
+    std::snprintf(number, sizeof number, "_%06zu", entries_.size());
+    return base_ + number + extension_;
   }
   /// Path of the .pvd file.
   std::string path() const { return base_ + ".pvd"; }
@@ -80,7 +108,7 @@ class PvdSeries {
     replacing.commit();
   }
 
-  std::string base_;
+  std::string base_, extension_;
   std::vector<std::pair<Real, std::string>> entries_;
 };
 

@@ -83,6 +83,28 @@ inline void check_columns(const std::string& path, int dim, std::size_t coordina
                         std::to_string(points) + " x " + std::to_string(c.components));
 }
 
+/// Beginning of a file of a kind of VTK data.
+inline void write_vtk_head(File& file, const std::string& kind, std::string_view comment) {
+  file.write("<?xml version=\"1.0\"?>\n");
+  if (!comment.empty()) {
+    std::string text(comment);
+    for (std::size_t at; (at = text.find("--")) != std::string::npos;) text.replace(at, 2, "- ");
+    file.write("<!-- " + text + " -->\n");
+  }
+  file.write("<VTKFile type=\"" + kind +
+             "\" version=\"1.0\" byte_order=\"LittleEndian\" header_type=\"UInt64\">\n");
+}
+
+/// The bytes of all arrays and the end of the file.
+inline void write_vtk_data(File& file, std::span<const VtkArray> arrays) {
+  file.write("<AppendedData encoding=\"raw\">\n_");
+  for (const VtkArray& array : arrays) {
+    file.write(&array.bytes, sizeof array.bytes);
+    file.write(array.data, array.bytes);
+  }
+  file.write("\n</AppendedData>\n</VTKFile>\n");
+}
+
 }  // namespace detail
 
 /// Writes one .vtp file: `positions` [m] has dim coordinates per point (missing ones are written
@@ -111,27 +133,16 @@ inline void write_vtp(const std::string& path, int dim, std::span<const Real> po
 
   ReplacingFile replacing(path);
   File& file = replacing.file();
-  file.write("<?xml version=\"1.0\"?>\n");
-  if (!comment.empty()) {
-    std::string text(comment);
-    for (std::size_t at; (at = text.find("--")) != std::string::npos;) text.replace(at, 2, "- ");
-    file.write("<!-- " + text + " -->\n");
-  }
-  file.write(
-      "<VTKFile type=\"PolyData\" version=\"1.0\" byte_order=\"LittleEndian\" "
-      "header_type=\"UInt64\">\n<PolyData>\n");
+  detail::write_vtk_head(file, "PolyData", comment);
+  file.write("<PolyData>\n");
   const std::string count = std::to_string(points);
   file.write("<Piece NumberOfPoints=\"" + count + "\" NumberOfVerts=\"" + count +
              "\" NumberOfLines=\"0\" NumberOfStrips=\"0\" NumberOfPolys=\"0\">\n");
   file.write("<Points>\n" + arrays[0].head + "</Points>\n");
   file.write("<Verts>\n" + arrays[1].head + arrays[2].head + "</Verts>\n<PointData>\n");
   for (std::size_t i = 3; i < arrays.size(); ++i) file.write(arrays[i].head);
-  file.write("</PointData>\n</Piece>\n</PolyData>\n<AppendedData encoding=\"raw\">\n_");
-  for (const detail::VtkArray& array : arrays) {
-    file.write(&array.bytes, sizeof array.bytes);
-    file.write(array.data, array.bytes);
-  }
-  file.write("\n</AppendedData>\n</VTKFile>\n");
+  file.write("</PointData>\n</Piece>\n</PolyData>\n");
+  detail::write_vtk_data(file, arrays);
   replacing.commit();
 }
 
