@@ -13,3 +13,4 @@
 #include <vadose/policy/law/newtonian_fluid.hpp>
 #include <vadose/policy/law/one_of.hpp>
 #include <vadose/policy/law/rigid.hpp>
+#include <vadose/policy/law/umat.hpp>
