@@ -279,12 +279,12 @@ void put_cells(A& a, G& nodes) {
         a.refuse("pressure cell", "does not exist");
     if (owner != static_cast<std::int32_t>(i)) continue;
     auto& cell = nodes.cell[i];
-    put_number(a, "cell pressure", cell.pressure);
-    put_number(a, "cell saturation", cell.saturation);
-    put_number(a, "cell porosity", cell.porosity);
-    put_number(a, "cell water", cell.water);
-    put_number(a, "cell fill", cell.raw_fill);
-    for (auto& x : cell.centroid) put_number(a, "cell centroid", x);
+    a.value("cell pressure", cell.pressure);
+    a.value("cell saturation", cell.saturation);
+    a.value("cell porosity", cell.porosity);
+    a.value("cell water", cell.water);
+    a.value("cell fill", cell.raw_fill);
+    for (auto& x : cell.centroid) a.value("cell centroid", x);
     auto kind = static_cast<std::uint8_t>(cell.kind);
     a.value("cell kind", kind);
     if constexpr (A::reading) {

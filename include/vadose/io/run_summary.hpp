@@ -35,7 +35,7 @@ class RunClock {
 };
 
 /// Prints points, cells, memory, step and its limit, number of steps and wall time of a run to
-/// t_end [s]. It times a few steps of a copy; the solver stays as it is.
+/// t_end [s]. It runs a copy for a second of wall time; the solver stays as it is.
 template <class S>
 void print_preflight(std::FILE* out, const S& solver, Real t_end) {
   const auto e = solver.estimate(t_end);

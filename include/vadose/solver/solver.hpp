@@ -4,7 +4,9 @@
 /// \file
 /// The solver: owns the state of a run; the host owns the loop.
 
+#include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <string>
 #include <utility>
 #include <vector>
@@ -65,10 +67,10 @@ struct EquilibriumReport {
 struct Estimate {
   std::size_t solid_points = 0, liquid_points = 0;
   std::size_t blocks = 0;  ///< blocks of 64 cells that exist
-  Real dt = 0;             ///< stable step now [s]
+  Real dt = 0;             ///< mean step at the end of the trial [s]
   StepLimit limit = StepLimit::none;
-  std::int64_t steps = 0;  ///< at that step, to the end time
-  Real seconds = 0;        ///< wall time
+  std::int64_t steps = 0;  ///< to the end time
+  Real seconds = 0;        ///< wall time of these, without output
   Real megabytes = 0;      ///< of points and grid
 
   /// A few lines for people.
@@ -239,23 +241,40 @@ class Solver {
     return b;
   }
 
-  /// Cost of a run to time t_end [s]: times a few steps of a copy.
-  Estimate estimate(Real t_end) const {
+  /// Cost of a run to time t_end [s]. It runs a copy for `trial_seconds` of wall time, or to the end
+  /// if that comes first, and takes step and pace of the second half of that for the rest: the
+  /// first steps of wet soil are neither as short nor as dear as those that follow.
+  Estimate estimate(Real t_end, Real trial_seconds = 1) const {
+    using Clock = std::chrono::steady_clock;
+    const auto start = Clock::now();
+    const auto spent = [&] { return std::chrono::duration<Real>(Clock::now() - start).count(); };
     Solver copy = *this;
-    const StepReport first = copy.step();
-    constexpr int trials = 3;
-    const auto start = std::chrono::steady_clock::now();
-    for (int i = 0; i < trials; ++i) copy.step();
-    const Real seconds =
-        std::chrono::duration<Real>(std::chrono::steady_clock::now() - start).count() / trials;
+    struct Mark {
+      Real wall, time;
+      std::int64_t step;
+    };
+    const auto now = [&] { return Mark{spent(), copy.time(), copy.steps()}; };
+    std::vector<Mark> marks{now()};
     Estimate e;
+    while (copy.time() < t_end && (marks.size() < 5 || marks.back().wall < trial_seconds)) {
+      const StepReport report = copy.step(t_end);
+      if (report.status != Status::ok) break;
+      if (copy.time() < t_end || e.limit == StepLimit::none) e.limit = report.limit;
+      marks.push_back(now());
+    }
+    const Mark first = marks.front(), last = marks.back();
+    const auto middle = std::find_if(marks.begin(), marks.end(), [&](const Mark& m) {
+      return m.wall >= 0.5 * (first.wall + last.wall);
+    });
+    const Mark from = middle + 1 < marks.end() ? *middle : first;
+    const auto taken = static_cast<Real>(std::max<std::int64_t>(last.step - from.step, 1));
     e.solid_points = state_.solid.size();
     e.liquid_points = state_.liquid.size();
     e.blocks = static_cast<std::size_t>(state_.grid.slots());
-    e.dt = copy.last_step().dt;
-    e.limit = first.limit;
-    e.steps = static_cast<std::int64_t>((t_end - state_.time) / e.dt) + 1;
-    e.seconds = seconds * static_cast<Real>(e.steps);
+    e.dt = last.time > from.time ? (last.time - from.time) / taken : copy.last_step().dt;
+    const Real rest = e.dt > 0 ? max(0.0, t_end - last.time) / e.dt : 0;
+    e.steps = last.step - first.step + static_cast<std::int64_t>(std::ceil(rest - 1e-9));
+    e.seconds = last.wall - first.wall + rest * (last.wall - from.wall) / taken;
     e.megabytes = 1e-6 * static_cast<Real>(memory_bytes());
     return e;
   }
