@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: MIT
+// The library inside a host: several solvers at once and in several threads, observers, and the cost
+// of a run that is told beforehand.
+
+#include <doctest/doctest.h>
+
+#include <thread>
+
+#include "restart_support.hpp"
+
+namespace {
+
+namespace vd = vadose;
+using vd::Real;
+
+struct Column : vd::UnsaturatedModel<vd::Uniaxial> {
+  using Skeleton = vd::law::Rigid;
+};
+using S = vd::Solver<Column>;
+
+S column(Real saturation) {
+  vd::Scene<Column> scene({.box = {{0.0}, {1.0}}, .cell_size = 0.05});
+  scene.gravity[0] = -9.81;
+  scene.liquid.bulk_modulus = 1e6;
+  scene.add_soil(vd::box({0.0}, {0.8}),
+                 {.name = "sand",
+                  .porosity = 0.4,
+                  .lambda = 0.63,
+                  .retention = {.a = 3},
+                  .conductivity = {.saturated_conductivity = 1e-4}},
+                 {.saturation = saturation});
+  scene.add(vd::bc::Rain{.rate = 1e-5});
+  return S(scene);
+}
+
+}  // namespace
+
+TEST_CASE("embedding: solvers in turns and in threads of the host have the bits of one alone") {
+  const restart_test::TemporaryDirectory directory("embedding", true);
+  const auto bytes = [&](const S& s) { return restart_test::bytes_of(s, directory); };
+  const Real wet[3] = {0.4, 0.6, 0.8};
+  std::string alone[3];
+  for (int i = 0; i < 3; ++i) {
+    S solver = column(wet[i]);
+    REQUIRE(restart_test::steps(solver, 300));
+    alone[i] = bytes(solver);
+  }
+  std::vector<S> turns, threads;
+  for (const Real w : wet) turns.push_back(column(w)), threads.push_back(column(w));
+  for (int step = 0; step < 300; ++step)
+    for (S& solver : turns) solver.step();
+  std::vector<std::thread> running;
+  for (S& solver : threads)
+    running.emplace_back([&solver] {
+      for (int step = 0; step < 300; ++step) solver.step();
+    });
+  for (std::thread& t : running) t.join();
+  for (std::size_t i = 0; i < 3; ++i) {
+    CHECK(bytes(turns[i]) == alone[i]);
+    CHECK(bytes(threads[i]) == alone[i]);
+  }
+}
+
+TEST_CASE("embedding: an observer sees every step, may stop the run, and changes no bit") {
+  const restart_test::TemporaryDirectory directory("embedding", true);
+  S plain = column(0.5), watched = column(0.5);
+  plain.advance_to(0.5);
+  std::int64_t calls = 0;
+  Real time = 0;
+  watched.advance_to(0.5, [&](const vd::StepReport& report) {
+    ++calls;
+    CHECK(report.time > time);
+    time = report.time;
+  });
+  CHECK(calls == watched.steps());
+  CHECK(time == 0.5);
+  CHECK(restart_test::bytes_of(plain, directory) == restart_test::bytes_of(watched, directory));
+  struct Enough {};
+  CHECK_THROWS_AS(watched.advance_to(1, [](const vd::StepReport&) { throw Enough{}; }), Enough);
+  CHECK(watched.steps() == plain.steps() + 1);
+}
+
+TEST_CASE("embedding: the estimate of a short run counts its steps") {
+  S solver = column(0.5);
+  const vd::Estimate short_run = solver.estimate(0.05, 100);  // the trial reaches the end
+  const vd::Estimate guessed = solver.estimate(2, 0);         // from the first steps
+  solver.advance_to(0.05);
+  CHECK(short_run.steps == solver.steps());
+  CHECK(guessed.steps > short_run.steps);
+  CHECK(guessed.seconds > 0);
+}
