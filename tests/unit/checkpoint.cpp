@@ -346,6 +346,6 @@ TEST_CASE("checkpoint: no damaged or hostile file does harm") {
 
 TEST_SUITE("long") {
   TEST_CASE("checkpoint: no damaged or hostile file does harm, many files") {
-    check_fuzz(60000);
+    check_fuzz(40000);
   }
 }
