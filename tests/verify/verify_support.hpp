@@ -67,6 +67,18 @@ Real largest_speed(const Points& points) {
   return norm.max;
 }
 
+/// Gives the skeleton of a solver a uniform vertical Bishop stress, the horizontal ones by a ratio [Pa].
+template <class Solver>
+void set_vertical_stress(Solver& solver, Real stress, Real lateral_ratio) {
+  constexpr int up = Solver::dim - 1;
+  constexpr int normal_components = 3;
+  auto& solid = solver.mutable_state().solid;
+  solid.for_each([&](std::size_t b, int l) {
+    for (int i = 0; i < normal_components; ++i)
+      solid.at(vadose::field::bishop_stress, b, i)[l] = i == up ? stress : lateral_ratio * stress;
+  });
+}
+
 /// E (1 - nu) / ((1 + nu) (1 - 2 nu)) [Pa].
 inline Real oedometric_modulus(Real young_modulus, Real poisson_ratio) {
   return young_modulus * (1 - poisson_ratio) / ((1 + poisson_ratio) * (1 - 2 * poisson_ratio));
