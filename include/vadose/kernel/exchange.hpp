@@ -5,6 +5,8 @@
 /// Steps 4 and 8: water fluxes through faces and what each cell gains. Each flux leaves one cell
 /// and enters another (or a counted boundary), so water is conserved to round-off.
 
+#include <algorithm>
+
 #include <vadose/kernel/momentum.hpp>
 
 namespace vadose::kernel {
@@ -54,6 +56,51 @@ Real face_mobility(const State<M>& state, const FaceFlux& face, Real porosity,
               unit_weight / face.conductivity);
 }
 
+/// Entry of the soil cell at a boundary face.
+template <class M>
+std::int32_t soil_at(const CellView<M>& view, int axis, const FaceFlux& face) noexcept {
+  return face.soil_below ? view.neighbour(axis, -1) : view.entry();
+}
+
+/// Part of the liquid's velocity at a boundary face that is left after a step of drag alone:
+/// [1 + dt n S gamma / (rho k)]^-1, 0 in the drag limit.
+template <class M>
+Real inertia_share(const State<M>& state, const CellView<M>& view, int axis,
+                   const FaceFlux& face) noexcept {
+  if (!(face.conductivity > 0)) return 0;
+  const auto& nodes = state.nodes;
+  const std::int32_t owner = nodes.dof[static_cast<std::size_t>(soil_at(view, axis, face))];
+  const auto& soil = nodes.cell[static_cast<std::size_t>(owner)];
+  return 1 / (1 + state.dt * soil.porosity * face.saturation *
+                      state.soils[soil.material].material.unit_weight /
+                      (state.water.density * face.conductivity));
+}
+
+/// Entry of the node that gives the velocity at a corner of a face. At the surface of a sliver it is
+/// the nearest node of the cell whose pressure the sliver shares: those beyond it hold no water (see
+/// into_pressure_cell), and the water of the sliver would not pass.
+template <class M>
+std::int32_t flux_node(const State<M>& state, const CellView<M>& view, int axis,
+                       const FaceFlux& face, const Index<State<M>::dim>& corner) noexcept {
+  constexpr int dim = State<M>::dim;
+  int at = view.at;
+  for (int d = 0; d < dim; ++d) at += corner[d] * BlockGrid<dim>::tile_stride(d);
+  if (face.kind == FaceKind::inside) return view.tile[at];
+  const std::int32_t soil = soil_at(view, axis, face);
+  const std::int32_t owner = state.nodes.dof[static_cast<std::size_t>(soil)];
+  if (owner == soil) return view.tile[at];
+  Index<dim> sliver = view.cell, node = view.cell;
+  if (face.soil_below) --sliver[axis];
+  for_cube<dim>(-1, 2, [&](const Index<dim>& step) {
+    Index<dim> cell = sliver;
+    for (int d = 0; d < dim; ++d) cell[d] += step[d];
+    if (state.grid.entry(cell) != owner) return;
+    for (int d = 0; d < dim; ++d)
+      node[d] = std::clamp(view.cell[d] + corner[d], cell[d], cell[d] + 1);
+  });
+  return state.grid.entry(node);
+}
+
 /// Flux through the lower face of a cell along an axis, from the nodal relative velocities; inside
 /// the soil the head gradient's departure from its nodal mean acts through the face mobility and
 /// removes the checkerboard that nodal means do not see.
@@ -70,9 +117,8 @@ void find_flux(State<M>& state, const CellView<M>& view, int axis, FaceFlux& fac
   Real velocity = 0, mean_gradient = 0;
   for_cube<dim>(0, 2, [&](const Index<dim>& corner) {
     if (corner[axis]) return;
-    int at = view.at;
-    for (int d = 0; d < dim; ++d) at += corner[d] * BlockGrid<dim>::tile_stride(d);
-    const Record& r = nodes.relative[static_cast<std::size_t>(view.tile[at])];
+    const Record& r =
+        nodes.relative[static_cast<std::size_t>(flux_node(state, view, axis, face, corner))];
     velocity += r[axis];
     mean_gradient += r[4 + axis];
   });
@@ -87,8 +133,9 @@ void find_flux(State<M>& state, const CellView<M>& view, int axis, FaceFlux& fac
     flux -= face_mobility(state, face, up.porosity, state.soils[up.material].material.unit_weight) *
             (face.head_gradient - mean_gradient);
   }
-  // Water enters or leaves at a held pressure only down its head gradient.
-  if (face.kind == FaceKind::surface && flux * face.head_gradient > 0) flux = 0;
+  // Water enters or leaves at a held pressure only down its head gradient, but for its inertia.
+  if (face.kind == FaceKind::surface && flux * face.head_gradient > 0)
+    flux *= inertia_share(state, view, axis, face);
   face.flux = face.area * flux;
   if (face.fed)  // no more than there is
     face.flux = face.soil_below ? max(face.flux, -face.supply) : min(face.flux, face.supply);
