@@ -69,10 +69,14 @@ std::size_t point_count(const Run& run) {
 /// last step.
 template <class Run>
 Run present(const Run& run) {
-  Run copy = run;
-  if constexpr (requires { copy.mutable_state().liquid; })
-    vadose::kernel::find_pressures(copy.mutable_state());
-  return copy;
+  if constexpr (requires { run.present(); }) {
+    return run.present();
+  } else {
+    Run copy = run;
+    if constexpr (requires { copy.mutable_state().liquid; })
+      vadose::kernel::find_pressures(copy.mutable_state());
+    return copy;
+  }
 }
 
 /// Runs a case once. An unstable run ends early and says so in `failure`.

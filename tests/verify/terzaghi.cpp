@@ -42,16 +42,30 @@ TEST_CASE("Terzaghi: random offsets of the points") {
   check_column({.jitter = 0.2});
 }
 
-TEST_CASE("Terzaghi: the error falls with the cell size") {
-  const Terzaghi column{.conductivity = 1e-4, .load = 100, .times = {0.05, 0.1, 0.3}};
+TEST_CASE("Terzaghi: second order in the cell size") {
+  // The step falls with the cell. k and load are small: at k = 1e-3 m/s inertia alone makes 0.2 % at
+  // T_v = 0.05 and 0.1, and at 10 kPa finite strain 0.02 % at T_v = 0.6.
+  const Terzaghi column{.conductivity = 1e-4, .load = 100, .times = {0.05, 0.1}};
   std::vector<verify::Outcome> runs;
   for (const auto& r : column.resolutions) runs.push_back(check_column(column, r.cells));
   for (std::size_t i = 1; i < runs.size(); ++i)
     for (const Real t : column.times) {
-      MESSAGE("Tv ", t, ": order ", verify::order(runs[i - 1], runs[i], "pressure", t));
-      CHECK(runs[i].rms("pressure", t) < runs[i - 1].rms("pressure", t));
+      const Real order = verify::order(runs[i - 1], runs[i], "pressure", t);
+      MESSAGE("Tv ", t, ": order ", order, " to ", runs[i].resolution.cells, " cells");
+      CHECK(order >= 1.8);
     }
-  WARN(verify::order(runs[0], runs[1], "pressure", 0.05) >= 0.9);  // 1.10, then 0.36
+}
+
+// Where the water keeps its speed for more than a step, the flux through the surface does too. Cut off
+// whenever the pressure had changed sign, it kept a surface cell swinging by half the load.
+TEST_CASE("Terzaghi: fine cells, inertia at the drained surface") {
+  check_column({.conductivity = 1e-3, .times = {0.05}}, 40);
+}
+
+// Less than half a cell of soil at the surface shares the pressure of the cell below.
+TEST_CASE("Terzaghi: surface between the cells") {
+  for (const Real fill : {0.75, 0.5, 0.25})
+    verify::check(Terzaghi{.top_fill = fill, .times = {0.05, 0.1}}, {.cells = 10});
 }
 
 TEST_SUITE("long") {

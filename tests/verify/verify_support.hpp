@@ -8,6 +8,7 @@
 #include <cstdlib>
 #include <numbers>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <vadose/solver/solver.hpp>
@@ -40,6 +41,15 @@ struct Norm {
 /// |value / reference - 1| <= tolerance, purely relative (doctest::Approx adds an absolute part).
 inline bool close(Real value, Real reference, Real tolerance) {
   return std::fabs(value - reference) <= tolerance * std::fabs(reference);
+}
+
+/// Value at x of a curve of (x, y) sorted by x, linear between its points and beyond them.
+inline Real linear(const std::vector<std::pair<Real, Real>>& curve, Real x) {
+  std::size_t i = 1;
+  while (i + 1 < curve.size() && curve[i].first < x) ++i;
+  const auto [xa, ya] = curve.at(i - 1);
+  const auto [xb, yb] = curve.at(i);
+  return ya + (x - xa) / (xb - xa) * (yb - ya);
 }
 
 /// Calls f(cell) for every cell of a kind that owns its pressure, as of the start of the last step.
