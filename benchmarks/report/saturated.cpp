@@ -15,9 +15,9 @@ int main(int count, char** arguments) {
   all.add(report::OneByOne{}, "Terzaghi k = 1e-4 m/s", terzaghi, columns);
   all.add(report::List<report::Variant<>>{}, "Terzaghi k = 9.8e-4 m/s", verify::Terzaghi{},
           {{10}, {20}, {40}});
-  const std::vector<Resolution> waves =
-      all.is_short() ? std::vector<Resolution>{{50}} : std::vector<Resolution>{{25}, {50}, {100}};
-  all.add(report::OneByOne{}, "two waves k = 9.8e-4 m/s", verify::TwoWaveColumn{}, waves);
-  all.add(report::OneByOne{}, "two waves k = 1 m/s", verify::TwoWaveColumn::high(), waves);
+  const verify::TwoWaveColumn low;
+  const verify::TwoWaveColumn high = verify::TwoWaveColumn::high();
+  all.add(report::OneByOne{}, "two waves k = 9.8e-4 m/s", low, low.resolutions);
+  all.add(report::OneByOne{}, "two waves k = 1 m/s", high, high.resolutions);
   return all.run(count, arguments);
 }

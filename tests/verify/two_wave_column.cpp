@@ -7,5 +7,5 @@
 
 TEST_CASE("two waves: pressures at low conductivity, arrivals and heights at high") {
   verify::check(verify::TwoWaveColumn{}, {.cells = 50});
-  verify::check(verify::TwoWaveColumn::high(), {.cells = 50});
+  verify::check(verify::TwoWaveColumn::high(), {.cells = 100});
 }

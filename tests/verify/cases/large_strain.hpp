@@ -28,6 +28,7 @@ struct LargeStrain {
   static constexpr Real height = 1, stiffness = 1e5, load = 5e4, porosity = 0.6;
 
   bool square_law = true;
+  int points_per_cell = 2;
   /// k_0 over 1e-4 m/s. The skeleton's wave takes 0.5 s up and down, T = 1 takes 98 s.
   Real speed_up = 10;
   Real bulk_modulus = 2e7;  ///< of the water [Pa]; it takes n M / K = 0.3 % of the load's pressure
@@ -56,11 +57,13 @@ struct LargeStrain {
             .square_law = square_law,
             .law = {.saturated_conductivity = 1e-4 * speed_up, .reference_porosity = porosity}}};
     const Real p0 = load / (1 + porosity * stiffness / bulk_modulus);
-    scene.add_soil(vadose::box(Vec<1>(0.0), Vec<1>(height)), slurry,
-                   {.liquid_pressure = [=](const Vec<1>&) { return p0; }});
+    scene.add_soil(
+        vadose::box(Vec<1>(0.0), Vec<1>(height)), slurry,
+        {.points_per_cell = points_per_cell, .liquid_pressure = [=](const Vec<1>&) { return p0; }});
     scene.add(vadose::bc::Fixed{.face = vadose::Face::bottom});
-    scene.add(vadose::bc::Traction<1>{.region = vadose::box(Vec<1>(height - h / 2), Vec<1>(height)),
-                                      .traction = Vec<1>(-load)});
+    scene.add(vadose::bc::Traction<1>{
+        .region = vadose::box(Vec<1>(height - h / points_per_cell), Vec<1>(height)),
+        .traction = Vec<1>(-load)});
     scene.add(vadose::bc::ZeroSuction{});
     vadose::Solver<Model, typename V::Scheme> solver(scene, {.courant = r.courant});
     set_vertical_stress(solver, p0 - load, nu / (1 - nu));

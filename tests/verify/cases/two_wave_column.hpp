@@ -86,7 +86,7 @@ struct TwoWaveColumn {
 
   using Physics = Terzaghi::Physics;
 
-  static TwoWaveColumn high() { return {.high_conductivity = true, .times = {10e-3}}; }
+  static TwoWaveColumn high() { return {.high_conductivity = true, .times = {13e-3}}; }
   Real seconds(Real time) const { return time; }
 
   template <class V>
