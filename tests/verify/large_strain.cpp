@@ -12,7 +12,7 @@ TEST_CASE("large strain: consolidation of slurry by the square law and by Kozeny
   for (const bool square_law : {true, false}) {
     CAPTURE(square_law);
     const verify::LargeStrain slurry{.square_law = square_law, .times = {0.1, 0.2}};
-    verify::check_outcome(slurry, verify::run(slurry, {.cells = 10}), 0.08);
+    verify::check_outcome(slurry, verify::run(slurry, {.cells = 10}), square_law ? 0.06 : 0.14);
   }
 }
 
@@ -22,7 +22,8 @@ TEST_SUITE("long") {
       for (const int cells : {20, 40}) {
         const verify::LargeStrain slurry{.square_law = square_law,
                                          .times = {0.1, 0.2, 0.4, 0.6, 1}};
-        verify::check_outcome(slurry, verify::run(slurry, {.cells = cells}), 0.05);
+        verify::check_outcome(slurry, verify::run(slurry, {.cells = cells}),
+                              square_law ? 0.05 : 0.14);
       }
   }
 }
