@@ -4,8 +4,7 @@
 //
 // The host applies the force: before each step of fixed length it adds dt b(X, t) to the velocities
 // of the points. That is the same kick as a nodal force and costs the library nothing; a body force
-// of the scene could not differ between the two phases, which tests/verify/manufactured_two_phase.cpp
-// needs. Velocities live at half steps, so they start at -dt/2.
+// of the scene could not differ between the two phases, which the two-phase solution needs. Velocities live at half steps, so they start at -dt/2.
 
 #include <doctest/doctest.h>
 
