@@ -124,21 +124,16 @@ std::int16_t find_held(const State<M>& state, int axis, int side, const Vec<Stat
   return -1;
 }
 
-/// Ground under rain or a film. The soil could take k H / gamma at the pressure of the film; given less than
-/// that it drinks all of it and its surface stays under suction, closed to the nodes; given more it
-/// is held at that pressure.
+/// Ground under rain or a film, and the most it could take; share_supplies() gives it its share.
 template <class M>
-void rained_face(const State<M>& state, const Cell<State<M>::dim>& soil,
-                 const RainColumn<State<M>::dim>* column, FaceFlux& face) {
+void rained_face(const State<M>& state, const Cell<State<M>::dim>& soil, bool wetted,
+                 FaceFlux& face) {
   const Real inward = face.soil_below ? face.head_gradient : -face.head_gradient;
   face.fed = true;
-  face.supply = 0;
-  if (column)
-    face.supply =
-        rain_on(state, *column) + max(0.0, column->film) / (state.water.density * state.dt);
-  const Real potential = face.area * face.conductivity * max(0.0, inward) /
-                         state.soils[soil.material].material.unit_weight;
-  face.thirsty = inward >= 0 && face.supply <= potential;
+  face.wetted = wetted;
+  face.supply = wetted ? face.area * face.conductivity * max(0.0, inward) /
+                             state.soils[soil.material].material.unit_weight
+                       : 0;
 }
 
 /// Face at a held pressure, at the given point of a wall or of the ground.
@@ -168,7 +163,7 @@ void surface_face(const State<M>& state, const CellView<M>& view, int axis,
   const RainColumn<State<M>::dim>* column = nullptr;
   if (state.films && face.held != held_closed &&
       (face.held < 0 || state.held[static_cast<std::size_t>(face.held)].kind == HeldKind::rain))
-    column = column_above(state, view, axis, face.soil_below);
+    column = column_wetting(state, view, axis, face.soil_below);
   if (face.held < 0 && !(column && column->film > 0)) return;
   const Real h = state.grid.cell_size();
   Real at[State<M>::dim];
@@ -176,7 +171,7 @@ void surface_face(const State<M>& state, const CellView<M>& view, int axis,
   at[axis] += (face.soil_below ? 0.5 : -0.5) * min(1.5, soil.fill) * h;
   if (column || state.held[static_cast<std::size_t>(face.held)].kind == HeldKind::rain) {
     outer_face(state, axis, soil, at, column ? film_pressure(state, *column) : 0, face);
-    rained_face(state, soil, column, face);
+    rained_face(state, soil, column != nullptr, face);
   } else {
     held_face(state, axis, soil, at, face);
   }
@@ -306,6 +301,7 @@ void find_faces(State<M>& state) {
                 state.nodes.face[static_cast<std::size_t>(e) * dim + static_cast<std::size_t>(d)] =
                     find_face(state, view, d);
             });
+  share_supplies(state);
   find_reference_pressures(state);
 }
 

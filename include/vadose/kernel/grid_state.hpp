@@ -108,7 +108,8 @@ struct FaceFlux {
   Real flux = 0;           ///< volume per time, upwards along the axis, times A [m3/s]
   FaceKind kind = FaceKind::closed;
   std::int16_t held = -1;   ///< which HeldPressure; -1: none
-  bool fed = false;         ///< a film feeds the surface and takes what comes out
+  bool fed = false;         ///< ground under rain or a film, which takes what comes out
+  bool wetted = false;      ///< and feeds it
   bool thirsty = false;     ///< the soil drinks all it is given: its surface stays under suction
   Real supply = 0;          ///< what a fed or thirsty face can take at most [m3/s]
   bool soil_below = false;  ///< of a surface or to_free face: the soil is on the lower side

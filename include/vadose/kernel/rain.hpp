@@ -86,22 +86,72 @@ Real film_pressure(const State<M>& state, const RainColumn<State<M>::dim>& colum
              : 0;
 }
 
-/// The column whose rain falls on the soil below a face; nullptr where none does.
+/// The column whose rain and film wet an open face, nullptr where none does: the highest ground of
+/// the column, and the sides of its soil down to the lower ground beside it, where the water of a
+/// slope runs down. (A slope is a staircase of cells; what it takes in goes through both.)
 template <class M>
-const RainColumn<State<M>::dim>* column_above(const State<M>& state, const CellView<M>& view,
-                                              int axis, bool soil_below) noexcept {
-  if (axis != State<M>::dim - 1 || !soil_below) return nullptr;
-  const auto& column = state.columns[column_of(state.grid, view.cell)];
-  return column.top == view.neighbour(axis, -1) ? &column : nullptr;
+const RainColumn<State<M>::dim>* column_wetting(const State<M>& state, const CellView<M>& view,
+                                                int axis, bool soil_below) noexcept {
+  constexpr int up = State<M>::dim - 1;
+  if (axis == up) {
+    if (!soil_below) return nullptr;
+    const auto& column = state.columns[column_of(state.grid, view.cell)];
+    return column.top == view.neighbour(axis, -1) ? &column : nullptr;
+  }
+  Index<State<M>::dim> soil = view.cell, air = view.cell;
+  --(soil_below ? soil : air)[axis];
+  const auto& beside = state.columns[column_of(state.grid, air)];
+  if (beside.top >= 0 && beside.top_cell[up] >= view.cell[up]) return nullptr;
+  return &state.columns[column_of(state.grid, soil)];
 }
 
-/// Column that lies on the air side of an open face, where water that comes out of the soil goes.
+/// Column that gives what enters the soil through a fed face, and column that gets what comes out:
+/// those of the soil and of the air.
 template <class M>
-std::size_t column_outside(const State<M>& state, const CellView<M>& view, int axis,
-                           const FaceFlux& face) noexcept {
+std::size_t column_at_face(const State<M>& state, const CellView<M>& view, int axis,
+                           const FaceFlux& face, bool enters) noexcept {
   Index<State<M>::dim> cell = view.cell;
-  if (axis < State<M>::dim - 1 && !face.soil_below) --cell[axis];
+  if (axis < State<M>::dim - 1 && face.soil_below == enters) --cell[axis];
   return column_of(state.grid, cell);
+}
+
+/// Calls f(face, view, axis) for every fed face, in the order of the cells.
+template <class M, class F>
+void for_fed_faces(State<M>& state, F&& f) {
+  constexpr int dim = State<M>::dim;
+  for_cells(state.grid, 1, [&](std::int32_t e, const Index<dim>& local, int slot, int) {
+    for (int d = 0; d < dim; ++d) {
+      FaceFlux& face =
+          state.nodes.face[static_cast<std::size_t>(e) * dim + static_cast<std::size_t>(d)];
+      if (face.fed) f(face, CellView<M>(state, local, slot), d);
+    }
+  });
+}
+
+/// Shares what a column has to give, its rain and its film, among the faces it wets, by what the
+/// soil could take through each: k H / gamma at the pressure of the film. Given less than that in all
+/// the soil drinks all of it and its surface stays under suction, closed to the nodes; given more it
+/// is held at that pressure.
+template <class M>
+void share_supplies(State<M>& state) {
+  if (!state.films) return;
+  for (auto& column : state.columns) column.potential = 0;
+  for_fed_faces(state, [&](FaceFlux& face, const CellView<M>& view, int axis) {
+    if (face.wetted)
+      state.columns[column_at_face(state, view, axis, face, true)].potential += face.supply;
+  });
+  for_fed_faces(state, [&](FaceFlux& face, const CellView<M>& view, int axis) {
+    const bool inward = (face.soil_below ? face.head_gradient : -face.head_gradient) >= 0;
+    if (!face.wetted) {
+      face.thirsty = inward;
+      return;
+    }
+    const auto& column = state.columns[column_at_face(state, view, axis, face, true)];
+    const Real given =
+        rain_on(state, column) + max(0.0, column.film) / (state.water.density * state.dt);
+    face.thirsty = inward && given <= column.potential;
+    face.supply = column.potential > 0 ? given * (face.supply / column.potential) : 0;
+  });
 }
 
 /// Mean height of the ground or of free water in a column [m]: a slope may cut its two highest cells.
@@ -159,7 +209,6 @@ void route_films(State<M>& state) {
 /// products as in the gains of the cells, so that the ledger closes to round-off.
 template <class M>
 void settle_films(State<M>& state) {
-  constexpr int dim = State<M>::dim;
   if (!state.films) return;
   const Real mass_per_flux = state.dt * state.water.density;
   for (auto& column : state.columns) {
@@ -168,18 +217,14 @@ void settle_films(State<M>& state) {
     column.film += fallen;
     state.rain += column.film - before;  // what was added, after rounding
   }
-  for_cells(state.grid, 1, [&](std::int32_t e, const Index<dim>& local, int slot, int) {
-    const CellView<M> view(state, local, slot);
-    for (int d = 0; d < dim; ++d) {
-      const FaceFlux& face =
-          state.nodes.face[static_cast<std::size_t>(e) * dim + static_cast<std::size_t>(d)];
-      if (!face.fed || face.flux == 0) continue;
-      const std::int32_t soil = face.soil_below ? view.neighbour(d, -1) : e;
-      const auto owner = static_cast<std::size_t>(state.nodes.dof[static_cast<std::size_t>(soil)]);
-      const Real into = face.soil_below ? -face.flux : face.flux;
-      const Real limit = into < 0 ? state.nodes.cell[owner].limit : 1;
-      state.columns[column_outside(state, view, d, face)].film -= mass_per_flux * limit * into;
-    }
+  for_fed_faces(state, [&](const FaceFlux& face, const CellView<M>& view, int axis) {
+    if (face.flux == 0) return;
+    const std::int32_t soil = face.soil_below ? view.neighbour(axis, -1) : view.entry();
+    const auto owner = static_cast<std::size_t>(state.nodes.dof[static_cast<std::size_t>(soil)]);
+    const Real into = face.soil_below ? -face.flux : face.flux;
+    const Real limit = into < 0 ? state.nodes.cell[owner].limit : 1;
+    state.columns[column_at_face(state, view, axis, face, into > 0)].film -=
+        mass_per_flux * limit * into;
   });
   route_films(state);
 }

@@ -113,6 +113,7 @@ struct RainColumn {
   Index<Dim> top_cell{};  ///< its coordinates
   Real area = 0;          ///< horizontal [m2]
   Real film = 0;          ///< water on the ground that is no point [kg]; outlives the step
+  Real potential = 0;     ///< what the soil could take of it [m3/s]
   bool gathers = false;   ///< its free points in the top cell become film
 };
 
