@@ -11,6 +11,9 @@ n = 0.4; Mualem, k_sat = 1e-4 m/s; g = 9.81 m/s2. Cases:
                   pressure gamma d acts on the ground; closed base
   zero_suction    p = 0 held at the top of S = 0.3; closed base
   drainage, rise  closed column, S = 0.9 in the upper (lower) half, 0.2 in the other
+  1:2, 1:1        rain of 0.3 and 3 k_sat on infinite slopes of 26.6 and 45 degrees, along the normal:
+                  gravity g cos, rain r cos per slope area; what does not enter runs off and leaves p = 0
+                  at the ground; written to richards_slope.csv (--slopes writes this one alone)
 Run with --check for the dependence on the grid and on the step.
 """
 import csv
@@ -44,10 +47,15 @@ def conductivity(s):
 
 
 class Column:
-    def __init__(self, cells, start, rain=None, held_top=False):
+    def __init__(self, cells, start, rain=None, held_top=False, fall=None):
         self.n, self.dz = cells, HEIGHT / cells
         self.p = [pressure(start((i + 0.5) * self.dz)) for i in range(cells)]
         self.rain, self.held_top = rain, held_top
+        self.runs_off, self.down = fall is not None, 1.0  # down: g and rain along the normal
+        if self.runs_off:
+            self.down = 1 / math.sqrt(1 + fall * fall)
+            self.rain *= self.down
+        self.runoff = 0.0
         self.pond = self.inflow = self.time = 0.0
         self.ponding = None
 
@@ -73,7 +81,7 @@ class Column:
                  for i in range(n)]
             for i in range(n - 1):
                 mean = 0.5 * (k[i] + k[i + 1])
-                h = (p[i + 1] - p[i]) / (GAMMA * dz) + 1
+                h = (p[i + 1] - p[i]) / (GAMMA * dz) + self.down
                 q = mean * h  # downwards
                 a = -mean / (GAMMA * dz) + 0.5 * dk[i] * h
                 b = mean / (GAMMA * dz) + 0.5 * dk[i + 1] * h
@@ -88,7 +96,7 @@ class Column:
             else:
                 top = 0.0 if surface == "held" else GAMMA * pond
                 mean = 0.5 * (K_SAT + k[-1])
-                h = (top - p[-1]) / (GAMMA * 0.5 * dz) + 1
+                h = (top - p[-1]) / (GAMMA * 0.5 * dz) + self.down
                 q = mean * h
                 diagonal[-1] -= -mean / (GAMMA * 0.5 * dz) + 0.5 * dk[-1] * h
                 if surface == "pond":
@@ -124,9 +132,9 @@ class Column:
             if not over:
                 p, _, q = result
                 k = 0.5 * (K_SAT + conductivity(saturation(p[-1])[0]))
-                over = q > k * (-p[-1] / (GAMMA * 0.5 * self.dz) + 1)
+                over = q > k * (-p[-1] / (GAMMA * 0.5 * self.dz) + self.down)
             if over:
-                result = self.attempt(dt, "pond")
+                result = self.attempt(dt, "held" if self.runs_off else "pond")
                 if result is not None and self.ponding is None:
                     self.ponding = self.time + 0.5 * dt
             elif result is not None:
@@ -134,6 +142,8 @@ class Column:
         if result is None:
             return False
         self.p, self.pond, q = result
+        if self.runs_off:
+            self.runoff += dt * (self.rain - q)
         self.inflow += dt * q
         self.time += dt
         return True
@@ -170,6 +180,30 @@ CASES = {
 }
 
 
+SLOPES = {
+    name + " " + rain: (dict(start=lambda z: 0.3, rain=factor * K_SAT, fall=fall),
+                        [100, 200, 300, 600])
+    for name, fall in (("1:2", 0.5), ("1:1", 1.0)) for rain, factor in (("rain0.3", 0.3),
+                                                                        ("rain3", 3))
+}
+
+
+def write_slopes(folder):
+    with open(os.path.join(folder, "richards_slope.csv"), "w", newline="") as f:
+        rows = csv.writer(f)
+        rows.writerow(["case", "t_s", "inflow_m", "runoff_m", "ponding_s"])
+        for name, (arguments, times) in SLOPES.items():
+            column = Column(400, **arguments)
+            w0 = column.content()
+            for t in times:
+                column.run_to(t, 1.0)
+                closure = column.content() - w0 - column.inflow
+                assert abs(closure) < 1e-5, (name, t, closure)
+                rows.writerow([name, t, "%.6f" % column.inflow, "%.6f" % column.runoff,
+                               "" if column.ponding is None else "%.2f" % column.ponding])
+            print(name, column.inflow, column.runoff, "ponding", column.ponding, flush=True)
+
+
 def run(name, cells, dt_max):
     arguments, times = CASES[name]
     column = Column(cells, **arguments)
@@ -190,6 +224,9 @@ def main():
                 column, out = run(name, cells, dt)
                 print(name, cells, dt, "ponding", column.ponding,
                       ["%g: %.5f %.5f %.1e" % o[:4] for o in out], flush=True)
+        return
+    write_slopes(here)
+    if "--slopes" in sys.argv:
         return
     with open(os.path.join(here, "richards_profiles.csv"), "w", newline="") as f, \
             open(os.path.join(here, "richards_history.csv"), "w", newline="") as g:

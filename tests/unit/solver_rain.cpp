@@ -141,6 +141,69 @@ TEST_CASE("a film runs down a slope at Manning's depth, and collects at the toe"
   CHECK(w.free + w.film > 0.95 * w.rain);
 }
 
+TEST_CASE("springs on a slope feed films, and the water is counted where it goes") {
+  // A hill whose lower half is under a water table that rises into the slope.
+  vd::Scene<Strip> scene({.box = {{0.0, 0.0}, {2.0, 1.2}}, .cell_size = 0.1});
+  scene.gravity = {0, -9.81};
+  scene.liquid.bulk_modulus = 1e6;
+  scene.add_soil(vd::polygon({{0, 0}, {2, 0}, {2, 0.2}, {1.6, 0.2}, {0, 1}}),
+                 {.name = "sand",
+                  .porosity = porosity,
+                  .lambda = 0.63,
+                  .retention = {.a = 3, .porosity_dependent = false},
+                  .conductivity = {.saturated_conductivity = 1e-3, .porosity_dependent = false}},
+                 {.water_table = 0.7});
+  auto open = scene;
+  scene.add(vd::bc::Rain{.rate = 0});
+  vd::Solver<Strip> solver(scene);
+  solver.advance_to(10);
+  auto w = solver.water_balance();
+  MESSAGE("springs: pore ", w.pore - w.initial, " kg, free ", w.free, ", film ", w.film,
+          ", closure ", w.relative_closure());
+  CHECK(w.rain == 0);
+  CHECK(w.free + w.film > 0.01 * w.initial);
+  check_closed(w);
+  open.add(vd::bc::SeepageFace{});
+  vd::Solver<Strip> drained(open);
+  drained.advance_to(10);
+  w = drained.water_balance();
+  MESSAGE("seepage face: out ", w.outflow, " kg, in ", w.inflow, ", closure ",
+          w.relative_closure());
+  CHECK(w.outflow > 0.01 * w.initial);
+  CHECK(w.inflow == 0);
+  check_closed(w);
+}
+
+TEST_CASE("rain and a pond enter soil that holds no water at all") {
+  for (const bool pond : {false, true}) {
+    vd::Scene<Column> scene({.box = {Vec<1>(0.0), Vec<1>(1.2)}, .cell_size = 0.1});
+    scene.gravity[0] = -9.81;
+    scene.liquid.bulk_modulus = 1e6;
+    scene.add_soil(
+        vd::box({0.0}, {0.8}),
+        {.name = "sand",
+         .porosity = porosity,
+         .lambda = 0.63,
+         .retention = {.a = 3, .porosity_dependent = false},
+         .conductivity = {.saturated_conductivity = conductivity, .porosity_dependent = false}},
+        {.dry = true});
+    if (pond)
+      scene.add_water(vd::box({0.8}, {1.0}), {.surface_level = 1.0});
+    else
+      scene.add(vd::bc::Rain{.rate = 0.3 * conductivity});
+    vd::Solver<Column> solver(scene);
+    solver.advance_to(60);
+    const auto w = solver.water_balance();
+    CAPTURE(pond);
+    MESSAGE(pond ? "pond" : "rain", " on dry soil: entered ", w.pore / 1000, " m, closure ",
+            w.relative_closure());
+    CHECK(w.pore > 0);
+    if (!pond) CHECK(w.pore == doctest::Approx(1000 * 0.3 * conductivity * 60).epsilon(1e-9));
+    if (pond) CHECK(w.pore + w.free + w.film == doctest::Approx(w.initial).epsilon(1e-12));
+    check_closed(w);
+  }
+}
+
 TEST_CASE("rain is refused where it makes no sense") {
   CHECK_THROWS_AS(rained<Column>(1, {}), vd::SetupError);
   CHECK_THROWS_AS(rained<Column>(1, {.rate = -1e-6}), vd::SetupError);

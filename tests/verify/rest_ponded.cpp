@@ -63,6 +63,7 @@ vd::Scene<M> scene_of(const Case& c) {
                                            .jitter = c.free_jitter ? c.jitter : 0,
                                            .seed = 11,
                                            .surface_level = c.level});
+  scene.add(vd::bc::Rain{.rate = 0});  // off: springs and films may be, rain not
   scene.add(vd::bc::Fixed{.face = vd::Face::bottom});
   if constexpr (dim > 1) {
     scene.add(vd::bc::Roller{.face = vd::Face::left});
@@ -127,6 +128,11 @@ Outcome run(const Case& c) {
     out.soil_pressure = std::max(out.soil_pressure, pressure_error(solver, vd::CellKind::soil, c));
     out.free_pressure = std::max(out.free_pressure, pressure_error(solver, vd::CellKind::free, c));
   }
+  const auto w = solver.water_balance();
+  CHECK(w.rain == 0);
+  CHECK(w.inflow == 0);
+  CHECK(w.outflow == 0);
+  CHECK(std::fabs(w.relative_closure()) <= 1e-12);
   stress_error(solver, c, out);
   out.solid_speed = verify::largest_speed(solver.solid());
   out.liquid_speed = verify::largest_speed(solver.liquid());
