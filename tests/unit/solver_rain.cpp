@@ -4,6 +4,7 @@
 #include <doctest/doctest.h>
 
 #include <cmath>
+#include <string>
 
 #include <vadose/solver/solver.hpp>
 
@@ -195,8 +196,8 @@ TEST_CASE("rain and a pond enter soil that holds no water at all") {
     solver.advance_to(60);
     const auto w = solver.water_balance();
     CAPTURE(pond);
-    MESSAGE(pond ? "pond" : "rain", " on dry soil: entered ", w.pore / 1000, " m, closure ",
-            w.relative_closure());
+    MESSAGE(std::string(pond ? "pond" : "rain"), " on dry soil: entered ", w.pore / 1000,
+            " m, closure ", w.relative_closure());
     CHECK(w.pore > 0);
     if (!pond) CHECK(w.pore == doctest::Approx(1000 * 0.3 * conductivity * 60).epsilon(1e-9));
     if (pond) CHECK(w.pore + w.free + w.film == doctest::Approx(w.initial).epsilon(1e-12));

@@ -252,7 +252,7 @@ void check_compression(Real a, Real lambda, bool dependent) {
   CHECK(below);
   CHECK(above);
   const auto w = solver.water_balance();
-  MESSAGE("compression, a ", a, " lambda ", lambda, dependent ? " S(s, n)" : " S(s)",
+  MESSAGE("compression, a ", a, " lambda ", lambda, std::string(dependent ? " S(s, n)" : " S(s)"),
           ": largest error of p ", 100 * largest, " %, p at the end ", last, " Pa, closure ",
           w.relative_closure(), ", steps ", solver.steps());
   CHECK(w.pore == w.initial);
