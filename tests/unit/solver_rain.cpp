@@ -3,6 +3,7 @@
 
 #include <doctest/doctest.h>
 
+#include <array>
 #include <cmath>
 #include <string>
 
@@ -205,7 +206,62 @@ TEST_CASE("rain and a pond enter soil that holds no water at all") {
   }
 }
 
+TEST_CASE("rain by a table falls in steps, and is counted exactly") {
+  auto solver = rained<Column>(0.5, {.table = {{2, 0.2e-4}, {5, 0}, {8, 0.1e-4}}});
+  for (const Real t : {2.0, 5.0, 8.0, 10.0}) solver.advance_to(t);
+  const auto w = solver.water_balance();
+  CHECK(w.rain == doctest::Approx(1000 * (3 * 0.2e-4 + 2 * 0.1e-4)).epsilon(1e-12));
+  check_closed(w);
+}
+
+TEST_CASE("driven rain falls on slopes that face it") {
+  // A ridge of slopes 1:2 and flat ground before and behind it, tight.
+  const auto caught = [](std::array<Real, 3> direction) {
+    vd::Scene<Strip> scene({.box = {{0.0, 0.0}, {4.0, 1.2}}, .cell_size = 0.1});
+    scene.gravity = {0, -9.81};
+    scene.liquid.bulk_modulus = 1e6;
+    scene.add_soil(
+        vd::polygon({{0, 0}, {4, 0}, {4, 0.2}, {3.2, 0.2}, {2, 0.8}, {0.8, 0.2}, {0, 0.2}}),
+        {.name = "clay",
+         .porosity = porosity,
+         .lambda = 0.63,
+         .retention = {.a = 3, .porosity_dependent = false},
+         .conductivity = {.saturated_conductivity = 1e-9, .porosity_dependent = false}},
+        {.saturation = 0.9});
+    scene.add(vd::bc::Rain{.rate = 1e-4, .direction = direction, .roughness = 10});
+    vd::Solver<Strip> solver(scene);
+    solver.advance_to(0.2);
+    check_closed(solver.water_balance());
+    Real film[4] = {};
+    const auto& columns = solver.state().columns;
+    for (std::size_t c = 0; c < columns.size(); ++c)
+      film[c < 8 ? 0 : c < 20 ? 1 : c < 32 ? 2 : 3] += columns[c].film / (c < 8 || c > 31 ? 8 : 12);
+    return std::array<Real, 4>{film[0] / film[3], film[1] / film[0], film[2] / film[0],
+                               solver.water_balance().rain / (1000 * 1e-4 * 4 * 0.2)};
+  };
+  const auto straight = caught({0, -2});
+  CHECK(straight[1] == doctest::Approx(1).epsilon(0.02));
+  CHECK(straight[2] == doctest::Approx(1).epsilon(0.02));
+  CHECK(straight[3] == doctest::Approx(1).epsilon(1e-12));
+  // One to the right for every two down: 1 + 0.5 x 0.5 on the left slope, 1 - 0.25 on the right.
+  const auto driven = caught({1, -2});
+  CHECK(driven[0] == doctest::Approx(1).epsilon(0.05));
+  CHECK(driven[1] == doctest::Approx(1.25).epsilon(0.03));
+  CHECK(driven[2] == doctest::Approx(0.75).epsilon(0.03));
+  CHECK(driven[3] == doctest::Approx(1).epsilon(1e-12));  // as much as through a horizontal plane
+  // Two to the right for each one down: 2 on the left; none on the right, 1 - 1.
+  const auto slanting = caught({2, -1});
+  CHECK(slanting[1] == doctest::Approx(2).epsilon(0.05));
+  CHECK(slanting[2] < 0.1);
+}
+
 TEST_CASE("rain is refused where it makes no sense") {
+  CHECK_THROWS_AS(rained<Column>(1, {.table = {{0, 1e-6}, {0, 2e-6}}}), vd::SetupError);
+  CHECK_THROWS_AS(rained<Column>(1, {.table = {{0, -1e-6}}}), vd::SetupError);
+  CHECK_THROWS_AS(rained<Column>(1, {.rate = 1e-6, .table = {{0, 1e-6}}}), vd::SetupError);
+  CHECK_THROWS_AS(rained<Column>(1, {.rate = 1e-6, .direction = {0, 1}}), vd::SetupError);
+  CHECK_THROWS_AS(rained<Strip>(1, {.rate = 1e-6, .direction = {1, 0}}), vd::SetupError);
+  CHECK_THROWS_AS(rained<Strip>(1, {.rate = 1e-6, .direction = {1, 0, -1}}), vd::SetupError);
   CHECK_THROWS_AS(rained<Column>(1, {}), vd::SetupError);
   CHECK_THROWS_AS(rained<Column>(1, {.rate = -1e-6}), vd::SetupError);
   CHECK_THROWS_AS(rained<Column>(1, {.rate = 1e-6, .roughness = 0}), vd::SetupError);

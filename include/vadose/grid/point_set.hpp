@@ -81,6 +81,13 @@ class PointSet {
         if (at(field::id, b)[l] >= 0) f(b, l);
   }
 
+  /// All components of a point in field order.
+  void read(std::size_t batch, int lane, std::span<double> values) const noexcept {
+    const double* p = data_.data() + batch * stride + static_cast<std::size_t>(lane);
+    for (std::size_t c = 0; c < static_cast<std::size_t>(Fields::total); ++c)
+      values[c] = p[c * lane_count];
+  }
+
   /// Adds a point; it takes part from the next sort on. values: all components in field order.
   void append(std::span<const double> values, int group) {
     new_values_.insert(new_values_.end(), values.begin(), values.end());

@@ -65,7 +65,7 @@ void put_fingerprint(A& a, F& print) {
 template <class A, class H>
 void put_held(A& a, H& held) {
   auto& [face_axis, face_side, kind, limited, acts, active, contains, pressure, supply, supply_rate,
-         inflow, outflow] = held;
+         drift, inflow, outflow] = held;
   put_flag(a, "switch of a liquid condition", acts);
   put_number(a, "supply of a liquid condition", supply_rate);
   a.value("inflow of a liquid condition", inflow);
@@ -74,7 +74,8 @@ void put_held(A& a, H& held) {
 
 template <class A, class C>
 void put_column(A& a, C& column) {
-  auto& [top, top_cell, area, film, gathers] = column;
+  // The potential is that of one step.
+  auto& [top, top_cell, area, film, potential, gathers] = column;
   a.value("top of a column", top);
   a.value("highest cell of a column", top_cell);
   put_number(a, "area of a column", area);

@@ -64,6 +64,40 @@ Real surface_height(const State<M>& state, const RainColumn<State<M>::dim>& colu
          (column.top_cell[up] + min(1.0, cell.raw_fill)) * state.grid.cell_size();
 }
 
+/// Mean height of the ground or of free water in a column [m]: a slope may cut its two highest cells.
+template <class M>
+Real mean_height(const State<M>& state, const RainColumn<State<M>::dim>& column) noexcept {
+  constexpr int up = State<M>::dim - 1;
+  Real height = surface_height(state, column);
+  if (column.top_cell[up] == 0) return height;
+  Index<State<M>::dim> below = column.top_cell;
+  --below[up];
+  const auto e = static_cast<std::size_t>(state.grid.entry(below));
+  return height - (1 - min(1.0, state.nodes.cell[e].raw_fill)) * state.grid.cell_size();
+}
+
+/// Area of ground that a column turns towards the rain, over its horizontal area: 1 + drift . grad z,
+/// from the heights of the columns beside it; not negative.
+template <class M>
+Real catching_area(const State<M>& state, const RainColumn<State<M>::dim>& column,
+                   const Real (&drift)[State<M>::dim]) {
+  constexpr int up = State<M>::dim - 1;
+  Real area = 1;
+  std::ptrdiff_t stride = 1;
+  for (int d = 0; d < up; ++d) {
+    const int position = column.top_cell[d], cells = state.grid.cells()[d];
+    const auto* low = position > 0 ? &column - stride : &column;
+    const auto* high = position + 1 < cells ? &column + stride : &column;
+    if (low->top < 0) low = &column;
+    if (high->top < 0) high = &column;
+    if (drift[d] != 0 && high != low)
+      area += drift[d] * (mean_height(state, *high) - mean_height(state, *low)) /
+              ((high->top_cell[d] - low->top_cell[d]) * state.grid.cell_size());
+    stride *= cells;
+  }
+  return max(0.0, area);
+}
+
 /// Rate at which rain of a condition reaches a column [m3/s]; 0 where it is not raining.
 template <class M>
 Real rain_on(const State<M>& state, const RainColumn<State<M>::dim>& column) {
@@ -74,7 +108,8 @@ Real rain_on(const State<M>& state, const RainColumn<State<M>::dim>& column) {
     x[d] = state.grid.origin()[d] + (column.top_cell[d] + 0.5) * state.grid.cell_size();
   x[dim - 1] = surface_height(state, column);
   for (const auto& held : state.held)
-    if (held.supply && held.acts && held.contains(x)) return held.supply_rate * column.area;
+    if (held.supply && held.acts && held.contains(x))
+      return held.supply_rate * column.area * catching_area(state, column, held.drift);
   return 0;
 }
 
@@ -152,18 +187,6 @@ void share_supplies(State<M>& state) {
     face.thirsty = inward && given <= column.potential;
     face.supply = column.potential > 0 ? given * (face.supply / column.potential) : 0;
   });
-}
-
-/// Mean height of the ground or of free water in a column [m]: a slope may cut its two highest cells.
-template <class M>
-Real mean_height(const State<M>& state, const RainColumn<State<M>::dim>& column) noexcept {
-  constexpr int up = State<M>::dim - 1;
-  Real height = surface_height(state, column);
-  if (column.top_cell[up] == 0) return height;
-  Index<State<M>::dim> below = column.top_cell;
-  --below[up];
-  const auto e = static_cast<std::size_t>(state.grid.entry(below));
-  return height - (1 - min(1.0, state.nodes.cell[e].raw_fill)) * state.grid.cell_size();
 }
 
 /// Mass [kg] that a film passes to the next column in a step: sheet flow by Manning,

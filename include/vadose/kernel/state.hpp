@@ -97,6 +97,7 @@ struct HeldPressure {
   /// Water offered at the ground surface [m/s per horizontal area] at time t [s]; empty: no limit.
   std::function<Real(Real)> supply = {};
   Real supply_rate = 0;    ///< the same at the present time [m/s]
+  Real drift[Dim] = {};    ///< way of the drops along each horizontal axis per metre of fall [-]
   CompensatedSum inflow;   ///< water taken in so far [kg]
   CompensatedSum outflow;  ///< water let out so far [kg]
 
@@ -130,6 +131,21 @@ enum class Escape : std::uint8_t {
   clamp,    ///< they are put back on the wall, at rest across it
 };
 
+/// Merge and split of free-water points, done when points are sorted. A full point has the mass
+/// rho_l (h / points_per_axis)^dim.
+struct Resampling {
+  bool on = false;          ///< off: points keep their number
+  Real merge_below = 0.25;  ///< lighter ones join a neighbour [full points], in [0, 0.5]
+  Real split_above = 2;     ///< heavier ones are halved [full points], >= 1.5
+  int points_per_axis = 2;  ///< of full points in a cell, in [1, 8]
+
+  void validate() const {
+    check::within("merge_below", merge_below, 0, 0.5, "full points");
+    if (!(split_above >= 1.5)) check::fail("split_above", split_above, "[1.5, inf)", "full points");
+    check::within("points_per_axis", points_per_axis, 1, 8, "-");
+  }
+};
+
 /// Choices of the explicit step.
 struct StepOptions {
   Real courant = 0.5;           ///< C [-] of the stable step
@@ -139,6 +155,7 @@ struct StepOptions {
   Real free_relaxation = 10;    ///< rate at which free points of a cell share its pressure [1/s]
   int threads = 1;              ///< used where the host links OpenMP
   Escape escaped = Escape::error;
+  Resampling resampling = {};
 };
 
 /// Sums of one thread, in its own cache lines.

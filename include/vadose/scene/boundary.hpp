@@ -5,11 +5,13 @@
 /// Boundary conditions as plain values. Scene::add() checks them; the solver turns them into lists
 /// of nodes, points and faces.
 
+#include <array>
 #include <functional>
 #include <string>
 #include <string_view>
 #include <utility>
 #include <variant>
+#include <vector>
 
 #include <vadose/core/error.hpp>
 #include <vadose/grid/region.hpp>
@@ -301,33 +303,66 @@ struct ZeroSuction {
   void validate(int dim) const { check::region(region, dim); }
 };
 
-/// Rain on the current ground and on free water, straight down (against the last axis). Per column of
-/// cells the soil drinks up to what it can take; what is left stays on the ground as a film, runs down
+/// Rain on the current ground and on free water, straight down or along `direction`: then slopes that
+/// face it catch more than level ground, slopes that turn away less or nothing (no shadow is cast on
+/// ground behind them). Per column of cells the soil drinks up to what it can take; what is left stays on the ground as a film, runs down
 /// slopes (sheet flow by Manning's formula, without momentum), soaks in elsewhere, and becomes points
 /// of free water as soon as it fills half a cell. Under rain no water is drawn in without supply, and
-/// water that seeps out joins the film. Give `rate` or `function`. Evaporation has no model: negative
-/// rates are refused, and from a function read as 0.
+/// water that seeps out joins the film. Give `rate`, `table` or `function`. Evaporation has no model:
+/// negative rates are refused, and from a function read as 0.
 struct Rain {
   static constexpr const char* name = "bc::Rain";
-  Real rate = unset;                        ///< r [m/s] per horizontal area, >= 0
+  Real rate = unset;  ///< r [m/s] per horizontal area, >= 0
+  /// Hyetograph: from time t [s] on it rains r [m/s], {{t, r}, ...}, t ascending; dry before.
+  std::vector<std::array<Real, 2>> table = {};
   std::function<Real(Real)> function = {};  ///< r(t [s]) [m/s]
   AnyRegion region = {};                    ///< part of the ground; all of it by default
+  /// Where the drops go, along the grid axes, of any length: {1, -2} drives them one to the right for
+  /// every two down. Zero: straight down. The component along the last axis is negative.
+  std::array<Real, 3> direction = {};
   /// Manning's n [s/m^(1/3)], > 0. One for all ground: that of the rain added last.
   Real roughness = 0.03;
   TimeSwitch active = {};  ///< when; always by default
 
   void validate(int dim) const {
-    check::exactly_one(int(rate == rate) + int(static_cast<bool>(function)), "rate, function",
-                       "m/s");
-    if (function)
-      check::non_negative("function(0 s)", function(0), "m/s");
-    else
-      check::non_negative("rate", rate, "m/s");
+    check::exactly_one(int(rate == rate) + int(!table.empty()) + int(static_cast<bool>(function)),
+                       "rate, table, function", "m/s");
+    if (function) check::non_negative("function(0 s)", function(0), "m/s");
+    if (rate == rate) check::non_negative("rate", rate, "m/s");
+    for (std::size_t i = 0; i < table.size(); ++i) {
+      check::finite("table time", table[i][0], "s");
+      check::non_negative("table rate", table[i][1], "m/s");
+      if (i > 0 && !(table[i][0] > table[i - 1][0]))
+        check::fail("table time", table[i][0], "(time before, inf)", "s");
+    }
     check::positive("roughness", roughness, "s/m^(1/3)");
     check::region(region, dim);
+    if (direction == std::array<Real, 3>{}) return;
+    for (int d = 0; d < 3; ++d)
+      check::finite("direction " + check::axis_name(d), direction[static_cast<std::size_t>(d)],
+                    "-");
+    for (int d = dim; d < 3; ++d)
+      if (direction[static_cast<std::size_t>(d)] != 0)
+        check::fail("direction " + check::axis_name(d), direction[static_cast<std::size_t>(d)],
+                    "{0}", "-");
+    if (!(fall(dim) < 0))
+      check::fail("direction " + check::axis_name(dim - 1), fall(dim), "(-inf, 0)", "-");
   }
+  /// Way of the drops along a horizontal axis for each metre that they fall [-].
+  Real drift(int axis, int dim) const noexcept {
+    return fall(dim) < 0 ? direction[static_cast<std::size_t>(axis)] / -fall(dim) : 0;
+  }
+  /// Component of the direction along the last of `dim` axes.
+  Real fall(int dim) const noexcept { return direction[static_cast<std::size_t>(dim - 1)]; }
   /// Rate [m/s] at time t [s].
-  Real at(Real t) const { return function ? function(t) : rate; }
+  Real at(Real t) const {
+    if (function) return function(t);
+    if (table.empty()) return rate;
+    Real now = 0;
+    for (const auto& [time, from_then_on] : table)
+      if (time <= t) now = from_then_on;
+    return now;
+  }
 };
 
 /// Hydraulic head held at a wall or at a part of the ground: p = gamma_l (H - z), z the height against

@@ -198,6 +198,10 @@ template <class M>
 auto held_pressure(const State<M>&, const bc::Rain& c) {
   auto h = held_place<M>(c, HeldKind::rain);
   h.supply = [c](Real t) { return c.at(t); };
+  constexpr int dim = M::Kinematics::dim;
+  for (int d = 0; d + 1 < dim; ++d) h.drift[d] = c.drift(d, dim);
+  if (M::Kinematics::axisymmetric && h.drift[0] != 0)
+    check::fail("direction r", c.direction[0], "{0} in axisymmetry", "-");
   return h;
 }
 

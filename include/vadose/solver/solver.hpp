@@ -17,6 +17,7 @@
 #include <vadose/solver/gather_films.hpp>
 #include <vadose/solver/release_films.hpp>
 #include <vadose/solver/report.hpp>
+#include <vadose/solver/resample_water.hpp>
 #include <vadose/solver/scheme.hpp>
 #include <vadose/solver/walls.hpp>
 
@@ -33,6 +34,7 @@ struct SolverOptions {
   typename M::Transfer transfer = {};  ///< numbers of the velocity transfer
   int threads = 1;                     ///< >= 1; more than one only where the host links OpenMP
   Escape escaped = Escape::error;      ///< what happens to points that leave the box
+  Resampling resampling = {};          ///< merge and split of free-water points
 
   void validate() const {
     check::in_context("solver options", [&] {
@@ -44,6 +46,7 @@ struct SolverOptions {
       check::non_negative("free_relaxation", free_relaxation, "1/s");
       transfer.validate();
       check::within("threads", threads, 1, 1024, "-");
+      check::in_context("resampling", [&] { resampling.validate(); });
     });
   }
 };
@@ -108,7 +111,7 @@ class Solver {
     state_.transfer = options.transfer;
     state_.options = {options.courant, options.damping,         options.displacement_cap,
                       options.dt_max,  options.free_relaxation, options.threads,
-                      options.escaped};
+                      options.escaped, options.resampling};
     detail::assemble(state_, scene);
     collect_walls(scene);
     state_.tiles.resize(static_cast<std::size_t>(2 * options.threads));
@@ -138,8 +141,12 @@ class Solver {
 
   /// One step, at most to time t_end [s]. Never throws; look at the report's status.
   StepReport step(Real t_end = 1e300) noexcept(false) {
-    if (state_.slack > 0.25 * state_.grid.cell_size() || state_.solid.has_new() || has_new_liquid())
+    if (state_.slack > 0.25 * state_.grid.cell_size() || state_.solid.has_new() ||
+        has_new_liquid()) {
+      if constexpr (has_liquid<M>)
+        if (state_.options.resampling.on && !state_.frozen) detail::resample_water(state_);
       sort();
+    }
     switch_conditions();
     state_.trouble = Trouble{};
     const kernel::StableStep used = Scheme::step(state_, t_end - state_.time);
