@@ -62,9 +62,9 @@ VADOSE_INLINE SymTensor<Lanes, State<M>::stress_size> load_stress(const State<M>
   return stress;
 }
 
-/// Adds one batch of solid points to a tile of nodes. In models with liquid the mean stress goes
-/// to the cells instead, where it meets the liquid pressure: see add_cell().
-template <class M>
+/// Adds one batch of solid points to a tile of nodes. With MeanByCell the mean stress goes to the
+/// cells instead, where it meets the liquid pressure: see add_cell().
+template <bool MeanByCell, class M>
 VADOSE_INLINE void map_solid_batch(const State<M>& state, std::size_t b,
                                    const TileFrame<State<M>::dim>& frame, Record* tile,
                                    [[maybe_unused]] Tile<State<M>::dim>& cell_sums) noexcept {
@@ -80,7 +80,7 @@ VADOSE_INLINE void map_solid_batch(const State<M>& state, std::size_t b,
   const Lanes mass = state.solid.load(field::mass, b);
   const Lanes volume = state.solid.load(field::volume, b);
   auto stress = load_stress(state, b);
-  if constexpr (has_liquid<M>) {
+  if constexpr (MeanByCell) {
     const Lanes mean = stress.mean();
     stress.add_isotropic(-mean);
     CellFinder<dim> cells;
@@ -126,8 +126,9 @@ void find_mean_stresses(State<M>& state) {
             });
 }
 
-/// Solid points to nodes: m, m v, -sum sigma V grad S, V.
-template <class M>
+/// Solid points to nodes: m, m v, -sum sigma V grad S, V. Without MeanByCell that is the whole
+/// stress of each point, as [Zhan] Eq. (22) has it.
+template <class M, bool MeanByCell = has_liquid<M>>
 void map_solid(State<M>& state) {
   constexpr int dim = State<M>::dim;
   clear(state.nodes.solid_in, state.options.threads);
@@ -137,12 +138,12 @@ void map_solid(State<M>& state) {
     const TileFrame<dim> frame = tile_frame(state.grid, range.slot);
     for (std::size_t b = range.begin; b < range.end; ++b) {
       state.solid.prefetch(b + 2);
-      map_solid_batch(state, b, frame, tile.record, cell_sums);
+      map_solid_batch<MeanByCell>(state, b, frame, tile.record, cell_sums);
     }
     tile.add_to(state.grid, range.slot, state.nodes.solid_in);
-    if constexpr (has_liquid<M>) cell_sums.add_to(state.grid, range.slot, state.nodes.content);
+    if constexpr (MeanByCell) cell_sums.add_to(state.grid, range.slot, state.nodes.content);
   });
-  if constexpr (has_liquid<M>) find_mean_stresses(state);
+  if constexpr (MeanByCell) find_mean_stresses(state);
 }
 
 /// Moves points of slivers to the edge of the cell whose pressure they share, for their mapping:

@@ -373,6 +373,17 @@ void advance_pair(const State<M>& state, const NodeSums<State<M>::dim>& sums, Re
   }
 }
 
+/// Walls and prescribed motion, after the velocities.
+template <class M>
+void apply_walls(const State<M>& state, std::int32_t entry, std::uint16_t flags,
+                 NodeMotion<State<M>::dim>& node) {
+  for (int d = 0; d < State<M>::dim; ++d) {
+    if (flags & (node_flag::solid_fixed << d)) node.solid[d] = 0;
+    if (flags & (node_flag::liquid_fixed << d)) node.liquid[d] = 0;
+  }
+  if (flags & node_flag::special) apply_special(state, entry, node);
+}
+
 /// Closed surfaces and walls, after the velocities.
 template <class M>
 void apply_boundaries(const State<M>& state, const NodeSums<State<M>::dim>& sums,
@@ -386,11 +397,28 @@ void apply_boundaries(const State<M>& state, const NodeSums<State<M>::dim>& sums
       normal[d] = flags & (node_flag::liquid_fixed << d) ? 0 : sums.normal[d];
     tie_normal(normal, is_rigid<M>, node);
   }
-  for (int d = 0; d < dim; ++d) {
-    if (flags & (node_flag::solid_fixed << d)) node.solid[d] = 0;
-    if (flags & (node_flag::liquid_fixed << d)) node.liquid[d] = 0;
+  apply_walls(state, entry, flags, node);
+}
+
+/// Velocity of a phase and its change, as points read them.
+template <int Dim>
+Record velocity_record(const Real (&before)[Dim], const Real (&after)[Dim]) noexcept {
+  Record out;
+  for (int d = 0; d < Dim; ++d) {
+    out[lane::velocity + d] = after[d];
+    out[lane::increment + d] = after[d] - before[d];
   }
-  if (flags & node_flag::special) apply_special(state, entry, node);
+  return out;
+}
+
+/// Writes the velocities of one node.
+template <class M>
+void store_velocities(State<M>& state, std::size_t i, const NodeMotion<State<M>::dim>& before,
+                      const NodeMotion<State<M>::dim>& after) {
+  if constexpr (is_deformable<M>)
+    state.nodes.solid_out[i] = velocity_record(before.solid, after.solid);
+  if constexpr (has_liquid<M>)
+    state.nodes.liquid_out[i] = velocity_record(before.liquid, after.liquid);
 }
 
 /// Writes the results of one node.
@@ -399,24 +427,14 @@ void store_node(State<M>& state, std::size_t i, const NodeSums<State<M>::dim>& s
                 const NodeMotion<State<M>::dim>& before, const NodeMotion<State<M>::dim>& after) {
   constexpr int dim = State<M>::dim;
   auto& nodes = state.nodes;
-  if constexpr (is_deformable<M>) {
-    Record out;
-    for (int d = 0; d < dim; ++d) {
-      out[lane::velocity + d] = after.solid[d];
-      out[lane::increment + d] = after.solid[d] - before.solid[d];
-    }
-    nodes.solid_out[i] = out;
-  }
+  store_velocities(state, i, before, after);
   if constexpr (has_liquid<M>) {
-    Record out, flux, relative;
+    Record flux, relative;
     for (int d = 0; d < dim; ++d) {
-      out[lane::velocity + d] = after.liquid[d];
-      out[lane::increment + d] = after.liquid[d] - before.liquid[d];
       flux[d] = porosity * after.liquid[d] + (1 - porosity) * after.solid[d];
       relative[d] = porosity * (after.liquid[d] - after.solid[d]);
       relative[4 + d] = sums.head_gradient[d];
     }
-    nodes.liquid_out[i] = out;
     nodes.mixture[i] = flux;
     nodes.relative[i] = relative;
   }

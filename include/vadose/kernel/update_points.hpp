@@ -229,13 +229,14 @@ VADOSE_INLINE void move(State<M>& state, Points& points, std::size_t b, const ch
 /// apart keeps this porosity.
 inline constexpr Real dispersed_porosity = 0.7;
 
-/// One batch of solid points.
+/// One batch of solid points. With RateByCell the volume follows the cell, in the strain as in the
+/// volume itself; shape follows the point.
 /// DEVIATION: [Zhan] Eq. (26) prints J inverted; J = (1 - n0) / (1 - n) here, as in Eq. (27).
-template <class M>
+template <bool RateByCell, class M>
 VADOSE_INLINE void update_solid_batch(State<M>& state, std::size_t b,
                                       const TileFrame<State<M>::dim>& frame,
-                                      const std::int32_t* entries, const Record* tile,
-                                      StepSums& sums) noexcept {
+                                      [[maybe_unused]] const std::int32_t* entries,
+                                      const Record* tile, StepSums& sums) noexcept {
   constexpr int dim = State<M>::dim;
   constexpr int n = State<M>::stress_size;
   using K = typename State<M>::Kinematics;
@@ -252,8 +253,7 @@ VADOSE_INLINE void update_solid_batch(State<M>& state, std::size_t b,
   const Lanes hoop = motion.velocity[0] * over_radius<K, dim>(x, Real(0));
   auto rate = rate_of_deformation<n>(motion.gradient, hoop);
   Lanes volume_rate = rate.trace();
-  if constexpr (has_liquid<M>) {
-    // The volume follows the cell, in the strain as in the volume itself; shape follows the point.
+  if constexpr (RateByCell) {
     CellFinder<dim> cells;
     cells.find(frame, x);
     const Lanes own = volume_rate;
@@ -301,7 +301,7 @@ VADOSE_INLINE void update_solid_batch(State<M>& state, std::size_t b,
 }
 
 /// Nodes to solid points: velocity, position, stress, volume.
-template <class M>
+template <class M, bool RateByCell = has_liquid<M>>
 void update_solid(State<M>& state) {
   constexpr int dim = State<M>::dim;
   for_blocks(state.solid, state.options.threads, [&](const BatchRange& range, int thread) {
@@ -312,7 +312,7 @@ void update_solid(State<M>& state) {
     StepSums& sums = state.sums[static_cast<std::size_t>(thread)];
     for (std::size_t b = range.begin; b < range.end; ++b) {
       state.solid.prefetch(b + 2);
-      update_solid_batch(state, b, frame, entries, tile.record, sums);
+      update_solid_batch<RateByCell>(state, b, frame, entries, tile.record, sums);
     }
     for (auto& r : tile.record) r = Record{};
   });
