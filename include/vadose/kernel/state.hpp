@@ -162,6 +162,7 @@ struct StepOptions {
 struct alignas(64) StepSums {
   Real max_speed2 = 0;  ///< [m2/s2]
   Real max_wave2 = 0;   ///< largest dry p-wave speed squared [m2/s2]
+  Real max_drag = 0;    ///< fastest decay of a relative velocity by explicit drag [1/s]
   bool failed = false;
   bool escaped = false;  ///< a point left the box
 };

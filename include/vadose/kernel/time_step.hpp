@@ -15,13 +15,14 @@ enum class StepLimit : std::uint8_t {
   skeleton,   ///< compression wave of dry soil
   water,      ///< sound in free water
   motion,     ///< points may not cross more than a part of a cell
+  drag,       ///< drag where a scheme takes it explicitly
   user,       ///< the largest step or the end time asked for
 };
 
 /// Name of a limit for reports.
 constexpr const char* name(StepLimit limit) noexcept {
-  constexpr const char* names[] = {"none",  "two-phase wave", "skeleton wave",
-                                   "water", "motion",         "user"};
+  constexpr const char* names[] = {"none",   "two-phase wave", "skeleton wave", "water",
+                                   "motion", "drag",           "user"};
   return names[static_cast<int>(limit)];
 }
 
