@@ -7,6 +7,7 @@
 #include <vadose/kernel/exchange.hpp>
 #include <vadose/kernel/time_step.hpp>
 #include <vadose/kernel/update_points.hpp>
+#include <vadose/solver/scheme/paper_literal.hpp>
 
 namespace vadose::scheme {
 

@@ -96,7 +96,8 @@ struct RunMemory {
   StepReport last;          ///< of the last step
 };
 
-/// A run of model M. Construction checks the scene and throws SetupError; nothing is half built.
+/// A run of model M. Construction checks the scene and throws SetupError; nothing is half built. A
+/// scheme that does not cover every scene has check(state) and check(state, HeldPressure).
 template <class M, class Scheme = scheme::Explicit>
 class Solver {
   static_assert(CheckModel<M>::ok);
@@ -120,6 +121,7 @@ class Solver {
     remember_start();
     start_wave_speed();
     count_initial();
+    if constexpr (requires { Scheme::check(state_); }) Scheme::check(state_);
   }
 
   Real time() const noexcept { return state_.time; }             ///< [s]
@@ -133,7 +135,11 @@ class Solver {
   /// a region go first, then those added first.
   template <class Condition>
   void add(const Condition& condition) {
-    check::in_context(Condition::name, [&] { condition.validate(dim); });
+    check::in_context(Condition::name, [&] {
+      condition.validate(dim);
+      if constexpr (requires { Scheme::check(state_); })
+        Scheme::check(state_, detail::held_pressure(state_, condition));
+    });
     detail::add_held(state_, condition);
     find_films();
     detail::flag_nodes(state_, walls_);
