@@ -101,12 +101,15 @@ template <class A, class Sums>
 void put_sums(A& a, Sums& sums) {
   StepSums all;
   for (const auto& one : sums) {
-    auto& [max_speed2, max_wave2, failed, escaped] = one;  // the flags are those of one step
+    auto& [max_speed2, max_wave2, max_drag, failed, escaped] =
+        one;  // the flags are those of one step
     all.max_speed2 = max(all.max_speed2, max_speed2);
     all.max_wave2 = max(all.max_wave2, max_wave2);
+    all.max_drag = max(all.max_drag, max_drag);
   }
   put_number(a, "largest speed", all.max_speed2);
   put_number(a, "largest wave speed", all.max_wave2);
+  put_number(a, "fastest drag", all.max_drag);
   if constexpr (A::reading) {
     for (auto& one : sums) one = StepSums{};
     sums.front() = all;
