@@ -395,6 +395,7 @@ void gather_cell(State<M>& state, const CellView<M>& view) {
   for (int d = 0; d < dim; ++d) cell.centroid[d] = sums[lane::pore_position + d] / weight;
   cell.gain = 0;
   cell.limit = 1;
+  cell.solved = false;
 
   const bool full = members == 1 && !at_air;
   cell.fill = full ? 1 : fill;

@@ -195,11 +195,12 @@ void for_inflows(const State<M>& state, const CellView<M>& view, F&& f) {
   });
 }
 
-/// A cell gives at most this part of its water in a step.
+/// A cell gives at most this part of its water in an explicit step.
 inline constexpr Real largest_outflow = 0.5;
 
-/// Limits the outflow of every cell to half the water it holds; on a sound scheme this does
-/// nothing, and what it holds back is counted.
+/// Limits the outflow of every cell to half the water it holds (soil cells of an implicit solution:
+/// to what it holds and receives); on a sound scheme this does nothing, and what it holds back is
+/// counted.
 template <class M>
 void limit_donors(State<M>& state) {
   constexpr int dim = State<M>::dim;
@@ -209,10 +210,15 @@ void limit_donors(State<M>& state) {
               if (state.nodes.dof[static_cast<std::size_t>(e)] != e) return;
               const CellView<M> view(state, local, slot);
               auto& cell = state.nodes.cell[static_cast<std::size_t>(e)];
-              Real out = 0;
-              for_inflows(state, view, [&](const Inflow<dim>& f) { out += max(0.0, -f.flux); });
+              Real out = 0, in = 0;
+              for_inflows(state, view, [&](const Inflow<dim>& f) {
+                out += max(0.0, -f.flux);
+                in += max(0.0, f.flux);
+              });
               out *= state.dt * state.water.density;
-              const Real most = largest_outflow * cell.water;
+              const Real most = cell.solved && cell.kind == CellKind::soil
+                                    ? cell.water + in * state.dt * state.water.density
+                                    : largest_outflow * cell.water;
               cell.limit = out > most ? most / out : 1;
               if (out > most) state.nodes.limited[static_cast<std::size_t>(slot)] += out - most;
             });
@@ -274,6 +280,15 @@ void fill_submerged_pores(State<M>& state) {
   });
 }
 
+/// Step 8: what the fluxes bring to cells, films and submerged pores.
+template <class M>
+void book_fluxes(State<M>& state) {
+  limit_donors(state);
+  find_gains(state);
+  settle_films(state);
+  fill_submerged_pores(state);
+}
+
 /// Step 4 (fluxes) and 8 (gains of cells).
 template <class M>
 void exchange_water(State<M>& state) {
@@ -281,10 +296,7 @@ void exchange_water(State<M>& state) {
   if constexpr (has_skeleton<M>) {
     if (state.frozen) return;
     find_fluxes(state);
-    limit_donors(state);
-    find_gains(state);
-    settle_films(state);
-    fill_submerged_pores(state);
+    book_fluxes(state);
   }
 }
 

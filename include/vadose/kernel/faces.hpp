@@ -80,6 +80,7 @@ void inside_face(const State<M>& state, int axis, const Cell<State<M>::dim>& a,
   const Real drop = b.pressure - a.pressure - hydrostatic(state, a.centroid, b.centroid);
   const auto& up = drop > 0 ? b : a;
   face.kind = FaceKind::inside;
+  face.distance = distance;
   face.head_gradient = drop / distance;
   face.saturation = up.saturation;
   face.conductivity = face_conductivity(state, up.material, up.conductivity, a.pressure, b.pressure,
@@ -94,6 +95,7 @@ void outer_face(const State<M>& state, int axis, const Cell<State<M>::dim>& soil
   const Real h = state.grid.cell_size();
   const Real distance = max(0.1 * h, std::fabs(at[axis] - soil.centroid[axis]));
   const Real inward = pressure - soil.pressure - hydrostatic(state, soil.centroid, at);
+  face.distance = distance;
   face.head_gradient = (face.soil_below ? inward : -inward) / distance;
   const bool enters = inward > 0;
   face.saturation = enters ? 1 : soil.saturation;
@@ -147,7 +149,8 @@ void held_face(const State<M>& state, int axis, const Cell<State<M>::dim>& soil,
   const bool dry = held.kind == HeldKind::reservoir && p <= 0;
   if (dry) p = 0;
   outer_face(state, axis, soil, at, p, face);
-  if (dry || held.kind == HeldKind::outlet)
+  face.one_way = dry || held.kind == HeldKind::outlet;
+  if (face.one_way)
     face.thirsty = (face.soil_below ? face.head_gradient : -face.head_gradient) >= 0;
 }
 
@@ -277,14 +280,16 @@ void find_reference_pressures(State<M>& state) {
               const CellView<M> view(state, local, slot);
               const Real own =
                   cell.pressure + hydrostatic(state, cell.centroid, cell.surface_point);
-              Real sum = 0, area = 0;
+              Real sum = 0, area = 0, shut = 0;
               for_faces(view, [&](const FaceFlux& face) {
                 if (face.kind != FaceKind::surface) return;
                 sum += face.area * (face.is_shut() ? own : face.held_pressure);
                 area += face.area;
+                if (face.is_shut()) shut += face.area;
               });
               cell.has_reference = area > 0;
               cell.reference_pressure = area > 0 ? sum / area : 0;
+              cell.reference_share = area > 0 ? shut / area : 0;
             });
 }
 

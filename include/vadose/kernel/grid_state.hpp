@@ -75,10 +75,12 @@ struct Cell {
   /// Liquid pressure at the surface of a cell at air: as held there, else that of the cell itself
   /// (a closed surface carries it) [Pa].
   Real reference_pressure = 0;
+  Real reference_share = 0;      ///< part of it that follows the pressure of the cell [-]
   Real rate = 0;                 ///< div q of free water [1/s]
   Real skeleton_rate = 0;        ///< div v^s [1/s]
   Real mean_stress = 0;          ///< mean Bishop stress of the skeleton in the cell [Pa]
   Real gain = 0;                 ///< water received in the step [kg]
+  Real change = 0;               ///< of the pressure over the step, where solved for [Pa]
   Real limit = 1;                ///< donor limiter on outflow
   Real mean_velocity[Dim] = {};  ///< of the water, mass weighted [m/s]
   Real momentum_gain[Dim] = {};  ///< velocity change by exchanged momentum [m/s]
@@ -86,6 +88,7 @@ struct Cell {
   bool at_air = false;         ///< a face of the cell is open to air
   bool drop = false;           ///< stands alone: no force, no volume change
   bool has_reference = false;  ///< reference_pressure applies
+  bool solved = false;         ///< an implicit solution gave `change`
   std::uint8_t material = 0;   ///< of the largest bulk volume
   std::uint8_t members = 1;    ///< itself and the slivers that share its pressure
 };
@@ -104,10 +107,12 @@ struct FaceFlux {
   Real saturation = 0;     ///< of the upstream side
   Real conductivity = 0;   ///< Kirchhoff blend [m/s]
   Real held_pressure = 0;  ///< at an open surface or wall [Pa]
+  Real distance = 0;       ///< over which H is taken [m]
   Real area = 0;           ///< [m2]
   Real flux = 0;           ///< volume per time, upwards along the axis, times A [m3/s]
   FaceKind kind = FaceKind::closed;
   std::int16_t held = -1;   ///< which HeldPressure; -1: none
+  bool one_way = false;     ///< lets water out only
   bool fed = false;         ///< ground under rain or a film, which takes what comes out
   bool wetted = false;      ///< and feeds it
   bool thirsty = false;     ///< the soil drinks all it is given: its surface stays under suction

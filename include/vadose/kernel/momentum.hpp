@@ -32,6 +32,7 @@ struct NodeSums {
   int soil_cells = 0;           ///< cells around that hold soil
   bool closed_surface = false;  ///< touches soil and air, and no water passes
   bool has_soil = false;
+  bool has_free = false;  ///< touches free water
   Real normal[Dim] = {};  ///< out of the soil, where closed_surface
 };
 
@@ -116,7 +117,7 @@ NodeSums<State<M>::dim> gather_node(const State<M>& state, const CellView<M>& vi
   NodeSums<dim> node;
   int air = 0, faces[dim] = {};
   Real saturation[dim] = {}, conductivity[dim] = {}, gradient[dim] = {};
-  bool open = false, water = false;
+  bool open = false;
   for_cube<dim>(0, 2, [&](const Index<dim>& corner) {
     // The cell of which this node is corner `corner`.
     Index<dim> cell = view.cell;
@@ -133,7 +134,7 @@ NodeSums<State<M>::dim> gather_node(const State<M>& state, const CellView<M>& vi
     if (inside && owner == view.tile[at]) {
       const auto& c = nodes.cell[e];
       add_cell(state, c, cell, corner, node);
-      water = water || c.kind == CellKind::free;
+      node.has_free = node.has_free || c.kind == CellKind::free;
     }
     // Faces whose plane goes through the node: lower faces of the cells on its upper side.
     for (int d = 0; d < dim; ++d) {
@@ -148,7 +149,7 @@ NodeSums<State<M>::dim> gather_node(const State<M>& state, const CellView<M>& vi
       gradient[d] += f.head_gradient;
     }
   });
-  if (node.references > 0 && !water)
+  if (node.references > 0 && !node.has_free)
     for (int d = 0; d < dim; ++d)
       node.force[d] -= node.reference / node.references * node.gradient[d];
   for (int d = 0; d < dim; ++d) {
@@ -161,7 +162,7 @@ NodeSums<State<M>::dim> gather_node(const State<M>& state, const CellView<M>& vi
       node.conductivity[d] /= node.soil_cells;
     }
   }
-  node.closed_surface = node.soil_cells > 0 && air > 0 && !open && !water;
+  node.closed_surface = node.soil_cells > 0 && air > 0 && !open && !node.has_free;
   return node;
 }
 
@@ -171,6 +172,7 @@ struct NodeMotion {
   Real solid_mass = 0, liquid_mass = 0;
   Real solid[Dim] = {}, liquid[Dim] = {};              ///< before, then after [m/s]
   Real solid_force[Dim] = {}, liquid_force[Dim] = {};  ///< [N]
+  Real drag[Dim] = {};                                 ///< implicit, times the step [kg]
 };
 
 /// Porosity of the control volume of a node: n_I = 1 - (1 - n) min(1, V_s / V_c). Volumetric, so
@@ -357,6 +359,7 @@ void advance_pair(const State<M>& state, const NodeSums<State<M>::dim>& sums, Re
     const Real r_l = a * node.liquid[d] + dt * node.liquid_force[d];
     const Real r_s = b * node.solid[d] + dt * node.solid_force[d];
     const Real q = dt * linear[d] * factor;
+    node.drag[d] = q;
     const bool fixed = is_finite(prescribed[d]);
     if (fixed)
       node.solid[d] = prescribed[d];
@@ -464,8 +467,91 @@ NodeMotion<State<M>::dim> load_node(const State<M>& state, std::size_t i) noexce
   return node;
 }
 
-/// One node: forces, drag, boundaries, new velocities.
+/// Velocities per force of one phase or a pair along every axis, as advance_pair finds them.
 template <class M>
+void find_mobilities(const State<M>& state, const NodeMotion<State<M>::dim>& node, bool has_solid,
+                     const Real (&prescribed)[State<M>::dim], NodeResponse<State<M>::dim>& r) {
+  const Real a = node.liquid_mass, b = node.solid_mass;
+  for (int d = 0; d < State<M>::dim; ++d) {
+    const Real q = node.drag[d];
+    const bool free = has_solid && !is_finite(prescribed[d]);
+    const Real det = a * b + q * (a + b);
+    if (a > 0) r.liquid_liquid[d] = state.dt * (free && q > 0 ? (b + q) / det : 1 / (a + q));
+    if (free) r.solid_solid[d] = state.dt * (a > 0 && q > 0 ? (a + q) / det : 1 / b);
+    if (a > 0 && free && q > 0) r.liquid_solid[d] = state.dt * q / det;
+    if (!free) r.solid_held |= static_cast<std::uint8_t>(1 << d);
+  }
+}
+
+/// How the pressure forces of a node follow from the gradients, as in pressure_forces.
+template <int Dim>
+void find_force_parts(const NodeSums<Dim>& sums, Real skeleton_volume, Real liquid_density,
+                      const NodeMotion<Dim>& node, NodeResponse<Dim>& r) noexcept {
+  if (!(sums.volume > 0)) return;
+  const Real occupancy = min(1.0, skeleton_volume / sums.volume);
+  const Real w = min(1.0, occupancy / 0.1);
+  const Real n = sums.soil_volume > 0 ? sums.pores / sums.soil_volume : 1;
+  r.liquid_part = node.liquid_mass / (liquid_density * sums.volume);
+  r.bishop_part = w + (1 - w) * occupancy;
+  for (int d = 0; d < Dim; ++d) {
+    r.pore_part[d] = w * r.liquid_part + (1 - w) * occupancy * n * sums.saturation[d];
+    r.gradient[d] = sums.gradient[d];
+  }
+  r.references = sums.has_free ? 0 : sums.references;
+}
+
+/// Walls, friction and ties of the phases at a node, as apply_boundaries sets them.
+template <class M>
+void find_constraints(const State<M>& state, const NodeSums<State<M>::dim>& sums,
+                      std::int32_t entry, std::uint16_t flags,
+                      const NodeMotion<State<M>::dim>& node, NodeResponse<State<M>::dim>& r) {
+  constexpr int dim = State<M>::dim;
+  const bool both = node.liquid_mass > 0 && (is_rigid<M> || node.solid_mass > 0);
+  Real length2 = 0;
+  for (int d = 0; d < dim; ++d) {
+    if (sums.closed_surface && both && !(flags & (node_flag::liquid_fixed << d)))
+      r.normal[d] = sums.normal[d];
+    length2 += r.normal[d] * r.normal[d];
+    if (flags & (node_flag::solid_fixed << d)) r.solid_held |= static_cast<std::uint8_t>(1 << d);
+    if (flags & (node_flag::liquid_fixed << d)) r.liquid_held |= static_cast<std::uint8_t>(1 << d);
+  }
+  for (Real& n : r.normal) n = length2 > 0 ? n / std::sqrt(length2) : 0;
+  r.liquid_share = is_rigid<M> ? 1 : node.solid_mass / (node.solid_mass + node.liquid_mass);
+  if (!(flags & node_flag::special)) return;
+  const auto& special = special_node(state, entry);
+  const int axis = special.friction_axis;
+  if (axis >= 0 && node.solid[axis] == 0) r.solid_held |= static_cast<std::uint8_t>(1 << axis);
+}
+
+/// Keeps how a node answers to forces, for an implicit solution.
+template <class M>
+void record_response(State<M>& state, std::size_t i, const NodeSums<State<M>::dim>& sums,
+                     Real porosity, Real skeleton_volume, const NodeMotion<State<M>::dim>& before,
+                     const NodeMotion<State<M>::dim>& node) {
+  constexpr int dim = State<M>::dim;
+  const auto entry = static_cast<std::int32_t>(i);
+  const std::uint16_t flags = state.nodes.node_flags[i];
+  NodeResponse<dim> r;
+  r.active = true;
+  r.grains = node.solid_mass > 0;
+  r.follows = !(node.liquid_mass > 0);
+  r.porosity = porosity;
+  for (int d = 0; d < dim; ++d) {
+    r.liquid[d] = node.liquid[d];
+    r.solid[d] = node.solid[d];
+    r.liquid_before[d] = before.liquid[d];
+    r.solid_before[d] = before.solid[d];
+  }
+  Real prescribed[dim];
+  find_prescribed(state, entry, flags, prescribed);
+  find_mobilities(state, node, !is_rigid<M> && node.solid_mass > 0, prescribed, r);
+  find_force_parts(sums, skeleton_volume, state.water.density, node, r);
+  find_constraints(state, sums, entry, flags, node, r);
+  state.system.response[i] = r;
+}
+
+/// One node: forces, drag, boundaries, new velocities. `Recorded`: for an implicit solution.
+template <bool Recorded = false, class M>
 void advance_node(State<M>& state, const CellView<M>& view) {
   constexpr int dim = State<M>::dim;
   const auto i = static_cast<std::size_t>(view.entry());
@@ -474,6 +560,7 @@ void advance_node(State<M>& state, const CellView<M>& view) {
   NodeSums<dim> sums;
   Real porosity = 1;
   if (node.solid_mass + node.liquid_mass <= 0) {
+    if constexpr (Recorded) state.system.response[i] = {};
     store_node(state, i, sums, porosity, node, node);
     return;
   }
@@ -505,18 +592,19 @@ void advance_node(State<M>& state, const CellView<M>& view) {
     }
   }
   apply_boundaries(state, sums, view.entry(), flags, node);
+  if constexpr (Recorded) record_response(state, i, sums, porosity, skeleton_volume, before, node);
   store_node(state, i, sums, porosity, before, node);
 }
 
 /// All nodes.
-template <class M>
+template <bool Recorded = false, class M>
 void advance_nodes(State<M>& state) {
   constexpr int dim = State<M>::dim;
   if constexpr (has_liquid<M>)
     state.nodes.open_impulse.assign(static_cast<std::size_t>(state.grid.slots() * dim), 0);
   for_cells(state.grid, state.options.threads,
             [&](std::int32_t, const Index<State<M>::dim>& local, int slot, int) {
-              advance_node(state, CellView<M>(state, local, slot));
+              advance_node<Recorded>(state, CellView<M>(state, local, slot));
             });
   if constexpr (has_liquid<M>)
     for (std::size_t i = 0; i < state.nodes.open_impulse.size(); ++i)

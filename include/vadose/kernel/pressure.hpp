@@ -47,8 +47,32 @@ void solve_saturated(State<M>& state) {
   });
 }
 
-/// Sums content and storage of the pore water at the trial pressures of the cells.
+/// Volume rates of the skeleton in the cells of eight points; `otherwise` where there is none.
 template <class M>
+VADOSE_INLINE Lanes cell_rates(const State<M>& state, const CellFinder<State<M>::dim>& cells,
+                               const std::int32_t* entries, const Lanes& otherwise) noexcept {
+  Lanes rate = otherwise;
+  for (int l = 0; l < lane_count; ++l) {
+    const std::int32_t owner = state.nodes.dof[static_cast<std::size_t>(entries[cells.index[l]])];
+    if (owner < 0) continue;
+    const auto& cell = state.nodes.cell[static_cast<std::size_t>(owner)];
+    rate.set(l, cell.skeleton_rate);
+  }
+  return rate;
+}
+
+/// Grains this far apart no longer follow the volume between them [-]: a skeleton that has come
+/// apart keeps this porosity.
+inline constexpr Real dispersed_porosity = 0.7;
+
+/// Factor of the bulk volume of pore water of porosity n over a step of volume strain dt div v^s.
+VADOSE_INLINE Lanes volume_stretch(const Lanes& porosity, const Lanes& strain) noexcept {
+  return min(exp(strain), (Lanes(1.0) - porosity) * Lanes(1 / (1 - dispersed_porosity)));
+}
+
+/// Sums content and storage of the pore water at the trial pressures of the cells; `Stretched`: in
+/// the volume after the step.
+template <bool Stretched = false, class M>
 void sum_content(State<M>& state, bool with_momentum) {
   constexpr int dim = State<M>::dim;
   const Lanes over_modulus(1 / state.water.bulk_modulus);
@@ -83,10 +107,17 @@ void sum_content(State<M>& state, bool with_momentum) {
             }
             p.set(l, at);
           }
+          Lanes porosity = state.liquid.load(field::porosity, b);
+          Lanes volume = state.liquid.load(field::volume, b);
+          if constexpr (Stretched) {
+            const Lanes rate = cell_rates(state, cells, entries, Lanes(0.0));
+            const Lanes stretch = volume_stretch(porosity, Lanes(state.dt) * rate);
+            volume = volume * stretch;
+            porosity = Lanes(1.0) - (Lanes(1.0) - porosity) / stretch;
+          }
           const auto theta = swrc::water_content<Lanes>(
-              state.soils[static_cast<std::size_t>(group)].material.retention, p,
-              state.liquid.load(field::porosity, b), over_modulus);
-          const Lanes volume = state.liquid.load(field::volume, b);
+              state.soils[static_cast<std::size_t>(group)].material.retention, p, porosity,
+              over_modulus);
           record[lane::content] = volume * theta.value;
           record[lane::storage] = volume * theta.slope;
         }

@@ -14,6 +14,7 @@
 #include <vadose/core/compensated_sum.hpp>
 #include <vadose/grid/point_set.hpp>
 #include <vadose/kernel/grid_state.hpp>
+#include <vadose/kernel/pressure_system.hpp>
 #include <vadose/kernel/tile.hpp>
 #include <vadose/model/fields.hpp>
 #include <vadose/model/material.hpp>
@@ -187,6 +188,7 @@ struct State {
 
   BlockGrid<dim> grid;
   GridState<dim> nodes;
+  PressureSystem<dim> system;  ///< of a semi-implicit run
   Solid solid;
   Liquid liquid;
   std::vector<Soil<M>> soils;

@@ -17,12 +17,16 @@ enum class StepLimit : std::uint8_t {
   motion,     ///< points may not cross more than a part of a cell
   drag,       ///< drag where a scheme takes it explicitly
   user,       ///< the largest step or the end time asked for
+  accuracy,   ///< change of saturation in a step (semi-implicit)
+  gravity,    ///< waves on free water (semi-implicit)
+  retry,      ///< a larger step found no pressures (semi-implicit)
 };
 
 /// Name of a limit for reports.
 constexpr const char* name(StepLimit limit) noexcept {
-  constexpr const char* names[] = {"none",   "two-phase wave", "skeleton wave", "water",
-                                   "motion", "drag",           "user"};
+  constexpr const char* names[] = {"none",         "two-phase wave", "skeleton wave", "water",
+                                   "motion",       "drag",           "user",          "accuracy",
+                                   "gravity wave", "retry"};
   return names[static_cast<int>(limit)];
 }
 
@@ -131,6 +135,64 @@ StableStep stable_step(const State<M>& state) {
   step.dt *= state.options.courant;
   if (speed2 > 0)
     step.take(state.options.displacement_cap * h / std::sqrt(speed2), StepLimit::motion);
+  step.take(state.options.dt_max, StepLimit::user);
+  return step;
+}
+
+/// Largest step of the skeleton alone, 2/omega = h / sqrt(E_c / ((1-n) rho_s)), over all cells.
+template <class M>
+StableStep skeleton_step(const State<M>& state) {
+  const Real h = state.grid.cell_size();
+  StableStep step;
+  if constexpr (is_deformable<M>) {
+    for (std::size_t i = 0; i + Block<State<M>::dim>::cells < state.nodes.cell.size(); ++i) {
+      const auto& c = state.nodes.cell[i];
+      if (state.nodes.dof[i] != static_cast<std::int32_t>(i) || c.kind != CellKind::soil) continue;
+      const auto& soil = state.soils[c.material];
+      const Real wave2 = soil.p_wave_modulus / ((1 - c.porosity) * soil.material.solid_density);
+      const bool cut = c.at_air && (c.members > 1 || c.raw_fill < 0.95);
+      step.take((cut ? cut_cell_step : 1) * h / std::sqrt(wave2), StepLimit::skeleton);
+    }
+  }
+  return step;
+}
+
+/// Step in which waves on free water cross a cell, h / sqrt(g depth), the depth from its pressure.
+template <class M>
+StableStep gravity_wave_step(const State<M>& state) {
+  StableStep step;
+  if constexpr (State<M>::dim > 1) {
+    Real deepest = 0;
+    for (std::size_t i = 0; i + Block<State<M>::dim>::cells < state.nodes.cell.size(); ++i) {
+      const auto& c = state.nodes.cell[i];
+      if (state.nodes.dof[i] == static_cast<std::int32_t>(i) && c.kind == CellKind::free)
+        deepest = max(deepest, c.quad_pressure);
+    }
+    if (deepest > 0)
+      step.take(state.grid.cell_size() / std::sqrt(deepest / state.water.density),
+                StepLimit::gravity);
+  }
+  return step;
+}
+
+/// Largest step with implicit pressures: neither the compression of water nor the drag counts.
+template <class M>
+StableStep implicit_step(const State<M>& state) {
+  const Real h = state.grid.cell_size();
+  StableStep step = skeleton_step(state);
+  Real wave2 = 0, speed2 = 0;
+  for (const StepSums& s : state.sums) {
+    wave2 = max(wave2, s.max_wave2);
+    speed2 = max(speed2, s.max_speed2);
+  }
+  if (wave2 > 0) step.take(h / std::sqrt(wave2), StepLimit::skeleton);
+  const StableStep waves = gravity_wave_step(state);
+  step.take(waves.dt, waves.limit);
+  step.dt *= state.options.courant;
+  if (speed2 > 0)
+    step.take(state.options.displacement_cap * h / std::sqrt(speed2), StepLimit::motion);
+  if (state.system.next_dt > 0 && !state.frozen)
+    step.take(state.system.next_dt, StepLimit::accuracy);
   step.take(state.options.dt_max, StepLimit::user);
   return step;
 }

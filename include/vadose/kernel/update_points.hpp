@@ -158,20 +158,6 @@ VADOSE_INLINE void update_half_sizes(Points& points, std::size_t b,
   }
 }
 
-/// Volume rates of the skeleton in the cells of eight points; `otherwise` where there is none.
-template <class M>
-VADOSE_INLINE Lanes cell_rates(const State<M>& state, const CellFinder<State<M>::dim>& cells,
-                               const std::int32_t* entries, const Lanes& otherwise) noexcept {
-  Lanes rate = otherwise;
-  for (int l = 0; l < lane_count; ++l) {
-    const std::int32_t owner = state.nodes.dof[static_cast<std::size_t>(entries[cells.index[l]])];
-    if (owner < 0) continue;
-    const auto& cell = state.nodes.cell[static_cast<std::size_t>(owner)];
-    rate.set(l, cell.skeleton_rate);
-  }
-  return rate;
-}
-
 /// Records the first thing found wrong with a lane of a batch.
 template <class M, class Points>
 void report_trouble(State<M>& state, const Points& points, std::size_t b, const LaneMask& bad,
@@ -224,10 +210,6 @@ VADOSE_INLINE void move(State<M>& state, Points& points, std::size_t b, const ch
   }
   sums.max_speed2 = max(sums.max_speed2, max_lane(select(alive & !fast, speed2, Lanes(0.0))));
 }
-
-/// Grains this far apart no longer follow the volume between them [-]: a skeleton that has come
-/// apart keeps this porosity.
-inline constexpr Real dispersed_porosity = 0.7;
 
 /// One batch of solid points. With RateByCell the volume follows the cell, in the strain as in the
 /// volume itself; shape follows the point.
@@ -365,10 +347,14 @@ VADOSE_INLINE void exchange_batch(State<M>& state, std::size_t b,
                       : v;
       }
       mass[l] = after;
-      // The storage at the start of the step predicts the pressure; it only starts the search.
-      const Real squeezed = cell.skeleton_rate * state.dt * cell.saturation * cell.pore_volume /
-                            max(cell.porosity, 1e-6);
-      p += (cell.gain / state.water.density - squeezed) / max(cell.storage, 1e-30);
+      if (cell.solved) {
+        p += cell.change;
+      } else {
+        // The storage at the start of the step predicts the pressure; it only starts the search.
+        const Real squeezed = cell.skeleton_rate * state.dt * cell.saturation * cell.pore_volume /
+                              max(cell.porosity, 1e-6);
+        p += (cell.gain / state.water.density - squeezed) / max(cell.storage, 1e-30);
+      }
     }
     if (cell.kind == CellKind::free && cell.pore_gain != 0) {
       const Real dm = cell.pore_gain * volume[l] * porosity[l] / cell.soil_pores;
@@ -406,7 +392,9 @@ VADOSE_INLINE void free_batch(State<M>& state, std::size_t b,
     for (int d = 0; d < dim; ++d)
       at_rest += state.water.density * state.gravity[d] * (x[d][l] - cell.centroid[d]);
     if (cell.kind == CellKind::free) {
-      if (!state.frozen)
+      if (cell.solved)
+        pressure[l] = at_rest + keep * (pressure[l] - at_rest) + cell.change;
+      else if (!state.frozen)
         pressure[l] =
             at_rest + keep * (pressure[l] - at_rest) - bulk_modulus * state.dt * cell.rate;
       if (cell.gain != 0 && cell.water > 0) {
@@ -525,8 +513,7 @@ VADOSE_INLINE void update_liquid_batch(State<M>& state, std::size_t b, int slot,
       for (int d = 0; d < dim; ++d) trace += carried.gradient[d][d];
       const Lanes rate = cell_rates(state, cells, entries, trace);
       const Lanes n = points.load(field::porosity, b);
-      const Lanes stretch =
-          min(exp(Lanes(state.dt) * rate), (Lanes(1.0) - n) * Lanes(1 / (1 - dispersed_porosity)));
+      const Lanes stretch = volume_stretch(n, Lanes(state.dt) * rate);
       points.store(field::volume, b, points.load(field::volume, b) * stretch);
       points.store(field::porosity, b, Lanes(1.0) - (Lanes(1.0) - n) / stretch);
       update_half_sizes(points, b, carried.gradient, state.dt, state.grid.cell_size());

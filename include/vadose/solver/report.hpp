@@ -21,13 +21,18 @@ struct StepReport {
   StepLimit limit = StepLimit::none;
   std::int64_t step = 0;  ///< number of the step
   Trouble trouble;        ///< where status is not ok
+  SolveReport solve;      ///< of the pressures, in a semi-implicit step
 
   /// One line for people.
   std::string text() const {
     char buffer[400];
     if (status == Status::ok) {
-      std::snprintf(buffer, sizeof buffer, "step %lld, t = %.6g s, dt = %.3g s (%s)",
-                    static_cast<long long>(step), time, dt, name(limit));
+      int n = std::snprintf(buffer, sizeof buffer, "step %lld, t = %.6g s, dt = %.3g s (%s)",
+                            static_cast<long long>(step), time, dt, name(limit));
+      if (solve.newton > 0)
+        std::snprintf(buffer + n, sizeof buffer - static_cast<std::size_t>(n),
+                      ", %d Newton and %d linear iterations, residual %.2g, %d retries",
+                      solve.newton, solve.linear, solve.residual, solve.retries);
     } else {
       std::snprintf(buffer, sizeof buffer,
                     "unstable: step %lld, t = %.6g s, dt = %.3g s (%s): %s violated by %s point "

@@ -1,0 +1,110 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+/// \file
+/// The order of a step with implicit pressures.
+
+#include <vadose/kernel/implicit_pressure.hpp>
+#include <vadose/solver/scheme/explicit.hpp>
+
+namespace vadose::scheme {
+
+/// Step with implicit cell pressures: neither the compressibility of water nor the conductivity of
+/// the soil limits it, only waves in the skeleton, motion, and the change of saturation.
+struct SemiImplicit {
+  static constexpr const char* name = "semi-implicit";
+
+  /// Largest change of saturation of a cell in a step [-]; twice of it and the step is repeated.
+  static constexpr Real saturation_step = 0.05;
+  /// A step is at most this much longer than the last.
+  static constexpr Real growth = 1.5;
+  /// So many times a step may be halved.
+  static constexpr int max_retries = 20;
+
+  /// One step of at most dt_limit [s]; returns the stable step that was used.
+  template <class M>
+  static kernel::StableStep step(State<M>& state, Real dt_limit) {
+    if constexpr (!has_liquid<M>) {
+      return Explicit::step(state, dt_limit);
+    } else {
+      state.system.report = {};
+      kernel::find_pressures(state);  // (g) of the last step: water in the cells, p, S
+      kernel::StableStep stable = kernel::implicit_step(state);
+      stable.take(dt_limit, StepLimit::user);
+      while (!predict_and_solve(state, stable)) {
+      }
+      if (state.sums[0].failed) return stable;
+      book(state);
+      if constexpr (is_deformable<M>) {
+        kernel::move_loads(state);
+        kernel::update_solid(state);  // (f), (h): positions, stress, volume
+      }
+      kernel::update_liquid(state);  // (f), (g): positions, water, p
+      return stable;
+    }
+  }
+
+ private:
+  /// Velocities with the old pressures, then pressures at the end of the step and what follows from
+  /// them. False: to be repeated with the smaller step that `stable` then holds. No point is touched.
+  template <class M>
+  static bool predict_and_solve(State<M>& state, kernel::StableStep& stable) {
+    const Vec<State<M>::dim> open_impulse = state.open_impulse;
+    kernel::begin_step(state, stable.dt);
+    if constexpr (has_skeleton<M>) kernel::find_faces(state);  // (c) k and S between cells
+    kernel::map_liquid(state);                                 // (a) liquid to nodes
+    if constexpr (is_deformable<M>) {
+      kernel::map_solid(state);  // (a) solid to nodes
+      kernel::map_loads(state);  //     traction
+    }
+    if (state.frozen) {
+      kernel::advance_nodes(state);
+      kernel::find_rates(state);
+      return true;
+    }
+    state.system.response.resize(state.grid.size());
+    kernel::advance_nodes<true>(state);  // (b), (d), (e): forces, drag, walls, velocities
+    const bool solved = kernel::solve_pressures(state);
+    if (solved && control_step(state, stable)) {
+      kernel::accept_pressures(state);
+      return true;
+    }
+    kernel::restore_pressures(state);
+    state.open_impulse = open_impulse;
+    SolveReport& report = state.system.report;
+    if (++report.retries > max_retries) {
+      state.sums[0].failed = true;
+      state.trouble.criterion = "pressures of the cells found";
+      state.trouble.phase = "liquid";
+      state.trouble.value = report.residual;
+      return true;
+    }
+    if (!solved) stable = {0.5 * stable.dt, StepLimit::retry};
+    return false;
+  }
+
+  /// Control of the error by the change of saturation: the step that may come next, and whether this
+  /// one stands.
+  template <class M>
+  static bool control_step(State<M>& state, kernel::StableStep& stable) {
+    auto& system = state.system;
+    const Real change = kernel::saturation_change(state);
+    system.report.saturation_change = change;
+    const Real factor = change > 0 ? min(growth, 0.9 * saturation_step / change) : growth;
+    if (change > 2 * saturation_step) {
+      stable = {max(0.1, factor) * stable.dt, StepLimit::accuracy};
+      return false;
+    }
+    system.next_dt = max(factor * stable.dt, stable.limit == StepLimit::user ? system.next_dt : 0);
+    return true;
+  }
+
+  /// Water that passes between cells, films and boundaries.
+  template <class M>
+  static void book(State<M>& state) {
+    if constexpr (has_skeleton<M>)
+      if (!state.frozen) kernel::book_fluxes(state);
+  }
+};
+
+}  // namespace vadose::scheme
