@@ -101,18 +101,12 @@ std::int32_t flux_node(const State<M>& state, const CellView<M>& view, int axis,
   return state.grid.entry(node);
 }
 
-/// Flux through the lower face of a cell along an axis, from the nodal relative velocities; inside
-/// the soil the head gradient's departure from its nodal mean acts through the face mobility and
-/// removes the checkerboard that nodal means do not see.
+/// Flux per area through the lower face of a cell along an axis, from the nodal relative velocities;
+/// inside the soil the head gradient's departure from its nodal mean acts through the face mobility
+/// and removes the checkerboard that nodal means do not see.
 template <class M>
-void find_flux(State<M>& state, const CellView<M>& view, int axis, FaceFlux& face) {
+Real nodal_flux(const State<M>& state, const CellView<M>& view, int axis, const FaceFlux& face) {
   constexpr int dim = State<M>::dim;
-  face.flux = 0;
-  if (face.kind == FaceKind::closed) return;
-  if (face.is_shut()) {
-    face.flux = face.soil_below ? -face.supply : face.supply;
-    return;
-  }
   const auto& nodes = state.nodes;
   Real velocity = 0, mean_gradient = 0;
   for_cube<dim>(0, 2, [&](const Index<dim>& corner) {
@@ -133,6 +127,19 @@ void find_flux(State<M>& state, const CellView<M>& view, int axis, FaceFlux& fac
     flux -= face_mobility(state, face, up.porosity, state.soils[up.material].material.unit_weight) *
             (face.head_gradient - mean_gradient);
   }
+  return flux;
+}
+
+/// Flux through the lower face of a cell along an axis.
+template <class M>
+void find_flux(const State<M>& state, const CellView<M>& view, int axis, FaceFlux& face) {
+  face.flux = 0;
+  if (face.kind == FaceKind::closed) return;
+  if (face.is_shut()) {
+    face.flux = face.soil_below ? -face.supply : face.supply;
+    return;
+  }
+  Real flux = nodal_flux(state, view, axis, face);
   // Water enters or leaves at a held pressure only down its head gradient, but for its inertia.
   if (face.kind == FaceKind::surface && flux * face.head_gradient > 0)
     flux *= inertia_share(state, view, axis, face);

@@ -17,7 +17,7 @@ inline constexpr Real gap_modulus = 2e4;
 
 /// Newton's method has found the pressures when no cell has more water unbalanced than this part of
 /// its pores.
-inline constexpr Real balance_tolerance = 1e-12;
+inline constexpr Real balance_tolerance = 1e-13;
 /// More than this part and the step is given up.
 inline constexpr Real balance_limit = 1e-7;
 inline constexpr int max_newton = 25;
@@ -353,13 +353,15 @@ void find_implicit_fluxes(State<M>& state) {
               for (int d = 0; d < dim; ++d) {
                 FaceFlux& face = state.nodes.face[static_cast<std::size_t>(e) * dim +
                                                   static_cast<std::size_t>(d)];
-                if (!switches(face)) {
-                  find_flux(state, view, d, face);
-                  continue;
+                if (switches(face)) {
+                  const Real in =
+                      switched_flux(state, soil_at(state, view, d, face), d, face).value;
+                  face.flux = face.soil_below ? -in : in;
+                } else if (face.kind == FaceKind::closed || face.is_shut()) {
+                  face.flux = 0;
+                } else {
+                  face.flux = face.area * nodal_flux(state, view, d, face);
                 }
-                const Real in =
-                    switched_flux(state, soil_at(state, view, d, face), d, face).value;
-                face.flux = face.soil_below ? -in : in;
               }
             });
 }
@@ -539,7 +541,7 @@ struct NodeAssembly {
     for (int d = 0; d < dim; ++d)
       for (int k = 0; k < faces.count[d]; ++k) {
         const FaceFlux& face = state.nodes.face[faces.face[d][k]];
-        if (switches(face) || (face.kind == FaceKind::surface && face.flux == 0)) continue;
+        if (switches(face)) continue;
         const Real share = face.area * face.saturation / (corners / 2);
         add_flux(d, faces.above[d][k], column, share * response.porosity * (liquid[d] - solid[d]));
       }

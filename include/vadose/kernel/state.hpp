@@ -147,7 +147,7 @@ struct Resampling {
   }
 };
 
-/// Choices of the explicit step.
+/// Choices of a step.
 struct StepOptions {
   Real courant = 0.5;           ///< C [-] of the stable step
   Real damping = 0;             ///< local damping of the skeleton [-], in [0, 1)
@@ -157,6 +157,7 @@ struct StepOptions {
   int threads = 1;              ///< used where the host links OpenMP
   Escape escaped = Escape::error;
   Resampling resampling = {};
+  Real saturation_step = 0.002;  ///< change of S that a semi-implicit step aims at [-]
 };
 
 /// Sums of one thread, in its own cache lines.

@@ -35,6 +35,10 @@ struct SolverOptions {
   int threads = 1;                     ///< >= 1; more than one only where the host links OpenMP
   Escape escaped = Escape::error;      ///< what happens to points that leave the box
   Resampling resampling = {};          ///< merge and split of free-water points
+  /// Change of the saturation of a cell that a semi-implicit step aims at [-], in (0, 1]: controls the
+  /// error in time of wetting and drying, where nothing else limits the step. A step with more than
+  /// twice of it is repeated.
+  Real saturation_step = 0.002;
 
   void validate() const {
     check::in_context("solver options", [&] {
@@ -47,6 +51,8 @@ struct SolverOptions {
       transfer.validate();
       check::within("threads", threads, 1, 1024, "-");
       check::in_context("resampling", [&] { resampling.validate(); });
+      if (!(saturation_step > 0 && saturation_step <= 1))
+        check::fail("saturation_step", saturation_step, "(0, 1]", "-");
     });
   }
 };
@@ -112,7 +118,7 @@ class Solver {
     state_.transfer = options.transfer;
     state_.options = {options.courant, options.damping,         options.displacement_cap,
                       options.dt_max,  options.free_relaxation, options.threads,
-                      options.escaped, options.resampling};
+                      options.escaped, options.resampling, options.saturation_step};
     detail::assemble(state_, scene);
     collect_walls(scene);
     state_.tiles.resize(static_cast<std::size_t>(2 * options.threads));

@@ -14,8 +14,6 @@ namespace vadose::scheme {
 struct SemiImplicit {
   static constexpr const char* name = "semi-implicit";
 
-  /// Largest change of saturation of a cell in a step [-]; twice of it and the step is repeated.
-  static constexpr Real saturation_step = 0.05;
   /// A step is at most this much longer than the last.
   static constexpr Real growth = 1.5;
   /// So many times a step may be halved.
@@ -90,8 +88,9 @@ struct SemiImplicit {
     auto& system = state.system;
     const Real change = kernel::saturation_change(state);
     system.report.saturation_change = change;
-    const Real factor = change > 0 ? min(growth, 0.9 * saturation_step / change) : growth;
-    if (change > 2 * saturation_step) {
+    const Real target = state.options.saturation_step;
+    const Real factor = change > 0 ? min(growth, 0.9 * target / change) : growth;
+    if (change > 2 * target) {
       stable = {max(0.1, factor) * stable.dt, StepLimit::accuracy};
       return false;
     }
