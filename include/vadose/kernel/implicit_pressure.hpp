@@ -67,11 +67,11 @@ template <class M, class F>
 void for_unknowns(State<M>& state, F&& f) {
   constexpr std::size_t chunk = 256;
   auto& unknowns = state.system.unknowns;
-  parallel_for((unknowns.size() + chunk - 1) / chunk, state.options.threads,
-               [&](std::size_t c, int) {
-                 for (std::size_t i = c * chunk; i < std::min(unknowns.size(), (c + 1) * chunk); ++i)
-                   f(i, unknowns[i], state.nodes.cell[static_cast<std::size_t>(unknowns[i].entry)]);
-               });
+  parallel_for(
+      (unknowns.size() + chunk - 1) / chunk, state.options.threads, [&](std::size_t c, int) {
+        for (std::size_t i = c * chunk; i < std::min(unknowns.size(), (c + 1) * chunk); ++i)
+          f(i, unknowns[i], state.nodes.cell[static_cast<std::size_t>(unknowns[i].entry)]);
+      });
 }
 
 /// The block and local coordinates of an entry.
@@ -323,10 +323,9 @@ SwitchedFlux switched_flux(const State<M>& state, const Cell<State<M>::dim>& soi
   const Real inward = (face.soil_below ? face.head_gradient : -face.head_gradient) * face.distance;
   if (face.one_way && inward >= 0) return {};
   const bool full = inward > 0 || soil.pressure >= 0;
-  const Real k =
-      face_conductivity(state, soil.material, full ? soil.saturated_conductivity : soil.conductivity,
-                        soil.pressure, face.held_pressure, soil.soil_porosity,
-                        gravity_head(state, axis, face.distance));
+  const Real k = face_conductivity(
+      state, soil.material, full ? soil.saturated_conductivity : soil.conductivity, soil.pressure,
+      face.held_pressure, soil.soil_porosity, gravity_head(state, axis, face.distance));
   const Real mobility =
       face.area * k / (state.soils[soil.material].material.unit_weight * face.distance);
   const Real potential = mobility * inward;
@@ -339,49 +338,48 @@ template <class M>
 const Cell<State<M>::dim>& soil_at(const State<M>& state, const CellView<M>& view, int axis,
                                    const FaceFlux& face) noexcept {
   const std::int32_t e = face.soil_below ? view.neighbour(axis, -1) : view.entry();
-  return state.nodes
-      .cell[static_cast<std::size_t>(state.nodes.dof[static_cast<std::size_t>(e)])];
+  return state.nodes.cell[static_cast<std::size_t>(state.nodes.dof[static_cast<std::size_t>(e)])];
 }
 
 /// All face fluxes at the trial pressures.
 template <class M>
 void find_implicit_fluxes(State<M>& state) {
   constexpr int dim = State<M>::dim;
-  for_cells(state.grid, state.options.threads,
-            [&](std::int32_t e, const Index<dim>& local, int slot, int) {
-              const CellView<M> view(state, local, slot);
-              for (int d = 0; d < dim; ++d) {
-                FaceFlux& face = state.nodes.face[static_cast<std::size_t>(e) * dim +
-                                                  static_cast<std::size_t>(d)];
-                if (switches(face)) {
-                  const Real in =
-                      switched_flux(state, soil_at(state, view, d, face), d, face).value;
-                  face.flux = face.soil_below ? -in : in;
-                } else if (face.kind == FaceKind::closed || face.is_shut()) {
-                  face.flux = 0;
-                } else {
-                  face.flux = face.area * nodal_flux(state, view, d, face);
-                }
-              }
-            });
+  for_cells(
+      state.grid, state.options.threads,
+      [&](std::int32_t e, const Index<dim>& local, int slot, int) {
+        const CellView<M> view(state, local, slot);
+        for (int d = 0; d < dim; ++d) {
+          FaceFlux& face =
+              state.nodes.face[static_cast<std::size_t>(e) * dim + static_cast<std::size_t>(d)];
+          if (switches(face)) {
+            const Real in = switched_flux(state, soil_at(state, view, d, face), d, face).value;
+            face.flux = face.soil_below ? -in : in;
+          } else if (face.kind == FaceKind::closed || face.is_shut()) {
+            face.flux = 0;
+          } else {
+            face.flux = face.area * nodal_flux(state, view, d, face);
+          }
+        }
+      });
 }
 
 /// Clears content and storage of all cells.
 template <class M>
 void clear_trial_content(State<M>& state) {
   std::fill(state.nodes.retry.begin(), state.nodes.retry.end(), char{1});
-  parallel_for(static_cast<std::size_t>(state.grid.slots()), state.options.threads,
-               [&](std::size_t s, int) {
-                 constexpr std::size_t cells = Block<State<M>::dim>::cells;
-                 for (std::size_t i = s * cells; i < (s + 1) * cells; ++i)
-                   state.nodes.content[i][lane::content] = state.nodes.content[i][lane::storage] = 0;
-               });
+  parallel_for(
+      static_cast<std::size_t>(state.grid.slots()), state.options.threads, [&](std::size_t s, int) {
+        constexpr std::size_t cells = Block<State<M>::dim>::cells;
+        for (std::size_t i = s * cells; i < (s + 1) * cells; ++i)
+          state.nodes.content[i][lane::content] = state.nodes.content[i][lane::storage] = 0;
+      });
 }
 
 /// Water that is in a soil cell after the step at its trial pressure, and its derivatives.
 template <class M>
-Real trial_content(const State<M>& state, const CellView<M>& view,
-                   const Cell<State<M>::dim>& cell, PressureUnknown<State<M>::dim>& u) {
+Real trial_content(const State<M>& state, const CellView<M>& view, const Cell<State<M>::dim>& cell,
+                   PressureUnknown<State<M>::dim>& u) {
   const Real compression = std::exp(u.pressure / state.water.bulk_modulus);
   const Real bulk = cell.pore_volume / max(cell.porosity, 1e-6);
   const Real stretch = std::exp(state.dt * cell.skeleton_rate);
@@ -393,8 +391,8 @@ Real trial_content(const State<M>& state, const CellView<M>& view,
     const Real n = pores / (bulk * stretch);
     Real slope = 0;
     if (is_deformable<M> && u.pressure < 0)
-      slope = swrc::porosity_slope<Real>(state.soils[cell.material].material.retention,
-                                         -u.pressure, n);
+      slope =
+          swrc::porosity_slope<Real>(state.soils[cell.material].material.retention, -u.pressure, n);
     u.squeeze = bulk * stretch * compression * (saturation + n * (1 - n) * slope);
     return sums[lane::content];
   } else {
@@ -419,8 +417,8 @@ Real find_residual(State<M>& state, PressureUnknown<State<M>::dim>& u, Cell<Stat
   if (u.free) {
     const Real quad = u.pressure + u.head;
     u.storage = cell.quad_volume / (quad > 0 ? state.water.bulk_modulus : gap_modulus);
-    return -cell.quad_volume * (state.dt * cell.rate + free_strain(state, quad) -
-                                free_strain(state, u.start + u.head));
+    return -cell.quad_volume *
+           (state.dt * cell.rate + free_strain(state, quad) - free_strain(state, u.start + u.head));
   }
   const CellView<M> view = view_of(state, u.entry);
   Real inflow = 0;
@@ -485,13 +483,15 @@ struct NodeAssembly {
   const State<M>& state;
   const CellView<M>& view;
   const NodeResponse<dim>& response;
-  std::int32_t cell[corners];               ///< around the node, -1: outside
+  std::int32_t cell[corners];                ///< around the node, -1: outside
   const PressureUnknown<dim>* own[corners];  ///< those that own their pressure
   NodeFaces<dim> faces;
   Block_& block;
 
   NodeAssembly(const State<M>& s, const CellView<M>& v, Block_& b)
-      : state(s), view(v), response(s.system.response[static_cast<std::size_t>(v.entry())]),
+      : state(s),
+        view(v),
+        response(s.system.response[static_cast<std::size_t>(v.entry())]),
         block(b) {
     block = {};
     for_cells_around(view, [&](int corner, std::int32_t e) {
@@ -523,11 +523,13 @@ struct NodeAssembly {
     const auto& c = state.nodes.cell[static_cast<std::size_t>(u.entry)];
     Real rate = 0;
     for (int d = 0; d < dim; ++d)
-      rate += u.weight[row][d] *
-              (u.free ? response.porosity * liquid[d] + (1 - response.porosity) * solid[d]
-                      : solid[d]);
-    block.value[row][column] +=
-        state.dt * rate * (u.free ? 1 : c.quad_volume > 0 ? u.squeeze / c.quad_volume : 0);
+      rate +=
+          u.weight[row][d] *
+          (u.free ? response.porosity * liquid[d] + (1 - response.porosity) * solid[d] : solid[d]);
+    block.value[row][column] += state.dt * rate *
+                                (u.free              ? 1
+                                 : c.quad_volume > 0 ? u.squeeze / c.quad_volume
+                                                     : 0);
   }
 
   /// Balance of the cells on both sides of a face: flux per pressure of the cell at `column`.
@@ -555,12 +557,12 @@ struct NodeAssembly {
       if (face.kind != FaceKind::inside) continue;
       const int above = faces.above[axis][k];
       const int up = face.head_gradient > 0 ? above : above | (1 << axis);
-      const auto& donor = state.nodes.cell[static_cast<std::size_t>(
-          state.nodes.dof[static_cast<std::size_t>(cell[up])])];
-      const Real mobility =
-          face.area / (corners / 2) *
-          face_mobility(state, face, donor.porosity,
-                        state.soils[donor.material].material.unit_weight);
+      const auto& donor =
+          state.nodes
+              .cell[static_cast<std::size_t>(state.nodes.dof[static_cast<std::size_t>(cell[up])])];
+      const Real mobility = face.area / (corners / 2) *
+                            face_mobility(state, face, donor.porosity,
+                                          state.soils[donor.material].material.unit_weight);
       for (int j = 0; j < count; ++j) {
         const FaceFlux& other = state.nodes.face[faces.face[axis][j]];
         const Real weight = mobility * ((j == k ? 1.0 : 0.0) - 1.0 / count);
@@ -679,8 +681,7 @@ void assemble_matrix(State<M>& state) {
       if (u.free || !cell.has_reference) return;
       for_axis_faces(view, [&](int axis, const FaceFlux& face) {
         if (switches(face))
-          system.matrix.add(row, row,
-                            -state.dt * switched_flux(state, cell, axis, face).slope);
+          system.matrix.add(row, row, -state.dt * switched_flux(state, cell, axis, face).slope);
       });
     }
   });
@@ -732,8 +733,7 @@ Real saturation_change(State<M>& state) {
       if (u.free) return;
       const Record sums = member_sums(view_of(state, u.entry), state.nodes.content);
       const Real bulk = cell.pore_volume / max(cell.porosity, 1e-6);
-      const Real pores =
-          cell.pore_volume + bulk * (std::exp(state.dt * cell.skeleton_rate) - 1);
+      const Real pores = cell.pore_volume + bulk * (std::exp(state.dt * cell.skeleton_rate) - 1);
       const Real compression = std::exp(u.pressure / state.water.bulk_modulus);
       const Real saturation = min(1.0, sums[lane::content] / (pores * compression));
       system.worst[row] = std::fabs(saturation - cell.saturation);

@@ -17,21 +17,21 @@ template <int Dim>
 struct NodeResponse {
   Real liquid[Dim] = {}, solid[Dim] = {};                ///< predicted velocities [m/s]
   Real liquid_before[Dim] = {}, solid_before[Dim] = {};  ///< before the step [m/s]
-  Real porosity = 1;        ///< of the control volume [-]
-  Real liquid_part = 0;     ///< phi: f_l = phi G [-]
-  Real bishop_part = 0;     ///< f_s = bishop_part G_S - pore_part G [-]
+  Real porosity = 1;                                     ///< of the control volume [-]
+  Real liquid_part = 0;                                  ///< phi: f_l = phi G [-]
+  Real bishop_part = 0;  ///< f_s = bishop_part G_S - pore_part G [-]
   Real pore_part[Dim] = {};
   /// Velocity per force along an axis [m/(s N)]: liquid by its own force, liquid by the solid's (and
   /// the other way round), solid by its own.
   Real liquid_liquid[Dim] = {}, liquid_solid[Dim] = {}, solid_solid[Dim] = {};
-  Real normal[Dim] = {};     ///< unit normal along which the phases are tied; zero: not
-  Real liquid_share = 0;     ///< what the liquid takes of the relative velocity that a tie removes
-  Real gradient[Dim] = {};   ///< sum f V_c grad N [m2]
-  int references = 0;        ///< cells around with a reference pressure that acts
+  Real normal[Dim] = {};    ///< unit normal along which the phases are tied; zero: not
+  Real liquid_share = 0;    ///< what the liquid takes of the relative velocity that a tie removes
+  Real gradient[Dim] = {};  ///< sum f V_c grad N [m2]
+  int references = 0;       ///< cells around with a reference pressure that acts
   std::uint8_t liquid_held = 0, solid_held = 0;  ///< bit per axis: velocity is given
-  bool follows = false;      ///< no water: the liquid's velocity is the solid's
-  bool grains = false;       ///< has solid mass
-  bool active = false;       ///< has mass
+  bool follows = false;                          ///< no water: the liquid's velocity is the solid's
+  bool grains = false;                           ///< has solid mass
+  bool active = false;                           ///< has mass
 };
 
 /// Pressure unknown of the implicit solution.
@@ -39,20 +39,20 @@ template <int Dim>
 struct PressureUnknown {
   static constexpr int corners = 1 << Dim;
 
-  std::int32_t entry = -1;       ///< its cell
-  Real start = 0;                ///< pressure before the step [Pa]
-  Real pressure = 0;             ///< trial pressure [Pa]
-  Real head = 0;                 ///< pressure at the quadrature point less that at the centroid [Pa]
-  Real start_quad = 0;           ///< pressure in the force before the step [Pa]
+  std::int32_t entry = -1;  ///< its cell
+  Real start = 0;           ///< pressure before the step [Pa]
+  Real pressure = 0;        ///< trial pressure [Pa]
+  Real head = 0;            ///< pressure at the quadrature point less that at the centroid [Pa]
+  Real start_quad = 0;      ///< pressure in the force before the step [Pa]
   Real weight[corners][Dim] = {};  ///< f V_c grad N of the nodes at the corners [m2]
-  Real quad_change = 0;          ///< of the pressure in the force [Pa]
-  Real quad_slope = 1;           ///< its derivative to the trial pressure [-]
-  Real bishop_change = 0;        ///< of S p [Pa]
-  Real bishop_slope = 1;         ///< its derivative [-]
-  Real storage = 0;              ///< derivative of the content to the trial pressure [m3/Pa]
-  Real squeeze = 0;              ///< derivative of the content to dt div v^s [m3]
-  bool free = false;             ///< free water
-  bool held = false;             ///< at the driest pressure and wants to be drier
+  Real quad_change = 0;            ///< of the pressure in the force [Pa]
+  Real quad_slope = 1;             ///< its derivative to the trial pressure [-]
+  Real bishop_change = 0;          ///< of S p [Pa]
+  Real bishop_slope = 1;           ///< its derivative [-]
+  Real storage = 0;                ///< derivative of the content to the trial pressure [m3/Pa]
+  Real squeeze = 0;                ///< derivative of the content to dt div v^s [m3]
+  bool free = false;               ///< free water
+  bool held = false;               ///< at the driest pressure and wants to be drier
 };
 
 /// How the solution of a step went.
@@ -75,12 +75,12 @@ struct PressureSystem {
 
   Real next_dt = 0;  ///< step that the control of the error allows next [s]; 0: no say yet
   SolveReport report;
-  std::vector<NodeResponse<Dim>> response;        ///< per node
-  std::vector<PressureUnknown<Dim>> unknowns;     ///< in order of cells
-  std::vector<std::int32_t> row_of;               ///< unknown of a cell that owns one, else -1
+  std::vector<NodeResponse<Dim>> response;          ///< per node
+  std::vector<PressureUnknown<Dim>> unknowns;       ///< in order of cells
+  std::vector<std::int32_t> row_of;                 ///< unknown of a cell that owns one, else -1
   std::vector<std::int32_t> last_row_of, last_dof;  ///< that the pattern was made for
-  std::vector<Real> start_gradient;               ///< of the faces before the step [Pa/m]
-  std::vector<NodeBlock> blocks;                  ///< per node
+  std::vector<Real> start_gradient;                 ///< of the faces before the step [Pa/m]
+  std::vector<NodeBlock> blocks;                    ///< per node
   std::vector<Real> residual, change, worst;
   SparseRows matrix;
   SparseSolver solver;

@@ -164,8 +164,8 @@ class Solver {
     const kernel::StableStep used = Scheme::step(state_, t_end - state_.time);
     state_.time += state_.dt;
     ++state_.step;
-    StepReport report{Status::ok, state_.time, state_.dt,         used.limit,
-                      state_.step, {},         state_.system.report};
+    StepReport report{Status::ok,  state_.time, state_.dt,           used.limit,
+                      state_.step, {},          state_.system.report};
     Real speed2 = 0;
     for (const StepSums& s : state_.sums) {
       if (s.failed) report.status = Status::failed;

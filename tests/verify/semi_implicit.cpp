@@ -1,0 +1,333 @@
+// SPDX-License-Identifier: MIT
+// The semi-implicit scheme at the true compressibility of water, K = 2.2 GPa: the references and
+// bounds of the explicit one, in far fewer steps.
+
+#include <doctest/doctest.h>
+
+#include "verify_support.hpp"
+
+namespace {
+
+namespace vd = vadose;
+using vd::Real;
+using vd::Vec;
+using vd::scheme::SemiImplicit;
+
+struct Saturated : vd::SaturatedModel<vd::Uniaxial> {};
+struct Strip : vd::SaturatedModel<vd::PlaneStrain> {};
+struct Rigid : vd::UnsaturatedModel<vd::Uniaxial> {
+  using Skeleton = vd::law::Rigid;
+};
+struct Elastic : vd::UnsaturatedModel<vd::Uniaxial> {
+  using Skeleton = vd::law::LinearElastic;
+};
+
+constexpr Real gravity = 9.81;
+
+/// Pressure of a cell at the end of the last step [Pa].
+template <class Cell>
+Real end_pressure(const Cell& cell) {
+  return cell.pressure + (cell.solved ? cell.change : 0);
+}
+
+template <class Solver>
+void check_ledger(const Solver& solver) {
+  CHECK(std::fabs(solver.water_balance().relative_closure()) <= 1e-12);
+  CHECK(solver.state().limited_water == 0);
+}
+
+/// Terzaghi's column of [Zhan] Table 1, 10 cells.
+vd::Solver<Saturated, SemiImplicit> terzaghi(Real conductivity, Real load, Real factor) {
+  vd::Scene<Saturated> scene({.box = {Vec<1>(0.0), Vec<1>(1.2)}, .cell_size = 0.1});
+  auto material = verify::saturated_soil<Saturated>(conductivity);
+  material.conductivity.porosity_dependent = false;
+  scene.add_soil(vd::box(Vec<1>(0.0), Vec<1>(1.0)), material,
+                 {.liquid_pressure = [=](const Vec<1>&) { return factor * load; }});
+  scene.add(vd::bc::Fixed{.face = vd::Face::bottom});
+  scene.add(
+      vd::bc::Traction<1>{.region = vd::box(Vec<1>(0.95), Vec<1>(1.0)), .traction = Vec<1>(-load)});
+  scene.add(vd::bc::ZeroSuction{});
+  return vd::Solver<Saturated, SemiImplicit>(scene);
+}
+
+/// [Zhan] 4.2 at h = 0.5 m: a pond of 0.5 m on 10 m of clay.
+template <class M>
+vd::Solver<M, SemiImplicit> ponded() {
+  constexpr bool rigid = std::is_same_v<M, Rigid>;
+  vd::Scene<M> scene({.box = {Vec<1>(0.0), Vec<1>(11.0)}, .cell_size = 0.5});
+  scene.gravity[0] = -gravity;
+  vd::SoilOptions<1> options{.water_table = 10 - 114e3 / (1000 * gravity)};
+  auto clay = [] {
+    if constexpr (rigid)
+      return vd::Material<M>{
+          .name = "clay",
+          .porosity = verify::table1::porosity,
+          .lambda = verify::table1::lambda,
+          .retention = {.a = verify::table1::a, .porosity_dependent = false},
+          .conductivity = {.saturated_conductivity = verify::table1::conductivity,
+                           .porosity_dependent = false}};
+    else
+      return verify::clay<M>();
+  }();
+  if constexpr (!rigid) {
+    options.initial_stress = vd::InitialStress::geostatic;
+    scene.add(vd::bc::Fixed{.face = vd::Face::bottom});
+  }
+  scene.add_soil(vd::box({0.0}, {10.0}), clay, options);
+  scene.add_water(vd::box({10.0}, {10.5}), {.surface_level = 10.5});
+  vd::Solver<M, SemiImplicit> solver(scene, {.damping = rigid ? 0.0 : 0.05});
+  if constexpr (!rigid)
+    REQUIRE(solver.equilibrate({.tolerance = 1e-5, .max_time = 20}).residual < 1e-4);
+  return solver;
+}
+
+/// rms error of S over the cells against the profile of a case and time.
+template <class M>
+Real profile_error(const vd::Solver<M, SemiImplicit>& solver, const std::string& name, Real t) {
+  static const verify::Table table("r3_pond_profiles.csv");
+  std::vector<std::pair<Real, Real>> rows;
+  for (std::size_t i = 0; i < table.size(); ++i)
+    if (table.text(i, "case") == name && table.number(i, "t_s") == t)
+      rows.emplace_back(table.number(i, "z_m"), table.number(i, "Sr"));
+  REQUIRE(rows.size() > 2);
+  verify::Norm norm;
+  verify::for_cells(solver, vd::CellKind::soil, [&](const auto& cell) {
+    std::size_t i = 1;
+    while (i + 1 < rows.size() && rows[i].first < cell.centroid[0]) ++i;
+    const auto [za, sa] = rows[i - 1];
+    const auto [zb, sb] = rows[i];
+    norm.add(cell.saturation -
+             (sa + std::min(1.0, (cell.centroid[0] - za) / (zb - za)) * (sb - sa)));
+  });
+  return norm.rms();
+}
+
+/// Checks profiles and, at the end, what is left of the pond [m].
+template <class M>
+void check_pond(const std::string& name, Real end, Real expected_left, std::int64_t most_steps) {
+  auto solver = ponded<M>();
+  for (const Real t : {50.0, 100.0, 200.0}) {
+    solver.advance_to(t);
+    const Real error = profile_error(solver, name, t);
+    MESSAGE(name, " t ", t, " s: rms S ", error, ", steps ", solver.steps());
+    CHECK(error <= 0.01);
+  }
+  solver.advance_to(end);
+  const auto w = solver.water_balance();
+  MESSAGE(name, " t ", end, " s: pond ", (w.free + w.film) / 1000, " m, expected ", expected_left,
+          ", steps ", solver.steps());
+  CHECK(verify::close((w.free + w.film) / 1000, expected_left, 0.02));
+  CHECK(solver.steps() <= most_steps);
+  check_ledger(solver);
+}
+
+/// Rain on 2 m of rigid sand, tests/reference/richards.py.
+vd::Solver<Rigid, SemiImplicit> rained(Real h, Real rate) {
+  vd::Scene<Rigid> scene({.box = {Vec<1>(0.0), Vec<1>(2.4)}, .cell_size = h});
+  scene.gravity[0] = -gravity;
+  const vd::Material<Rigid> sand = {
+      .name = "sand",
+      .porosity = 0.4,
+      .lambda = 0.63,
+      .retention = {.a = 3, .porosity_dependent = false},
+      .conductivity = {.saturated_conductivity = 1e-4, .porosity_dependent = false}};
+  scene.add_soil(vd::box({0.0}, {2.0}), sand, {.saturation = 0.3});
+  scene.add(vd::bc::Rain{.rate = rate});
+  return vd::Solver<Rigid, SemiImplicit>(scene, {.saturation_step = 0.01});
+}
+
+Real richards(const std::string& name, Real t, const std::string& column) {
+  static const verify::Table table("richards_history.csv");
+  for (std::size_t i = 0; i < table.size(); ++i)
+    if (table.number(i, "t_s") == t && table.text(i, "case") == name)
+      return table.number(i, column);
+  FAIL("no row ", name, " at ", t);
+  return 0;
+}
+
+Real rain_error(const vd::Solver<Rigid, SemiImplicit>& solver, const std::string& name, Real h) {
+  static const verify::Table table("richards_profiles.csv");
+  verify::Norm norm;
+  verify::for_cells(solver, vd::CellKind::soil, [&](const auto& cell) {
+    verify::Norm mean;
+    for (std::size_t i = 0; i < table.size(); ++i)
+      if (table.number(i, "t_s") == std::round(solver.time()) && table.text(i, "case") == name &&
+          std::fabs(table.number(i, "z_m") - cell.centroid[0]) < 0.5 * h)
+        mean.add(table.number(i, "S"));
+    REQUIRE(mean.count > 0);
+    norm.add(cell.saturation - mean.mean());
+  });
+  return norm.rms();
+}
+
+constexpr Real edge = 0.1, column_level = 1.3;
+
+/// Saturated soil of 1 m under 0.3 m of water, 4 cells wide.
+vd::Solver<Strip, SemiImplicit> resting(Real jitter, int threads = 1) {
+  vd::Scene<Strip> scene({.box = {Vec<2>(0, 0), Vec<2>(0.4, 1.5)}, .cell_size = edge});
+  scene.gravity[1] = -gravity;
+  scene.add_soil(vd::box(Vec<2>(0, 0), Vec<2>(0.4, 1)), verify::saturated_soil<Strip>(),
+                 {.points_per_cell = 4,
+                  .jitter = jitter,
+                  .seed = 7,
+                  .water_table = column_level,
+                  .initial_stress = vd::InitialStress::geostatic});
+  scene.add_water(vd::box(Vec<2>(0, 1), Vec<2>(0.4, column_level)),
+                  {.points_per_cell = 4, .surface_level = column_level});
+  scene.add(vd::bc::Fixed{.face = vd::Face::bottom});
+  scene.add(vd::bc::Roller{.face = vd::Face::left});
+  scene.add(vd::bc::Roller{.face = vd::Face::right});
+  return vd::Solver<Strip, SemiImplicit>(scene, {.threads = threads});
+}
+
+/// Largest |p - hydrostatic| at the end of any step until t [Pa].
+Real run_at_rest(vd::Solver<Strip, SemiImplicit>& solver, Real t) {
+  verify::Norm norm;
+  while (solver.time() < t) {
+    const auto step = solver.step(t);
+    if (step.status != vd::Status::ok) FAIL(step.text());
+    for (const auto kind : {vd::CellKind::soil, vd::CellKind::free})
+      verify::for_cells(solver, kind, [&](const auto& cell) {
+        norm.add(end_pressure(cell) - 1000 * gravity * (column_level - cell.centroid[1]));
+      });
+  }
+  return norm.max;
+}
+
+/// Pressures over the load in the cells of soil 2 m wide and 1 m deep under a strip of 10 kPa on its
+/// left quarter, undrained.
+std::vector<Real> strip_load(int columns) {
+  const Real h = 2.0 / columns, load = 1e4;
+  const int rows = columns / 2;
+  vd::Scene<Strip> scene({.box = {Vec<2>(0, 0), Vec<2>(2, 1 + 2 * h)}, .cell_size = h});
+  scene.add_soil(vd::box(Vec<2>(0, 0), Vec<2>(2, 1)), verify::saturated_soil<Strip>(1e-8),
+                 {.points_per_cell = 4, .liquid_pressure = [](const Vec<2>&) { return 0.0; }});
+  scene.add(vd::bc::Fixed{.face = vd::Face::bottom});
+  scene.add(vd::bc::Roller{.face = vd::Face::left});
+  scene.add(vd::bc::Roller{.face = vd::Face::right});
+  scene.add(vd::bc::Traction<2>{.region = vd::box(Vec<2>(0, 1 - h / 2), Vec<2>(0.5, 1)),
+                                .traction = Vec<2>(0, -load),
+                                .time_factor = [](Real t) { return std::min(1.0, t / 0.05); }});
+  scene.add(vd::bc::ZeroSuction{});
+  vd::Solver<Strip, SemiImplicit> solver(scene);
+  solver.advance_to(0.2);
+  MESSAGE(columns, " columns: ", solver.last_step().text());
+  check_ledger(solver);
+  std::vector<Real> p(static_cast<std::size_t>(columns * rows), 0.0);
+  verify::for_cells(solver, vd::CellKind::soil, [&](const auto& cell) {
+    const int i = static_cast<int>(cell.centroid[0] / h),
+              j = static_cast<int>(cell.centroid[1] / h);
+    p[static_cast<std::size_t>(i + columns * j)] = end_pressure(cell) / load;
+  });
+  return p;
+}
+
+}  // namespace
+
+TEST_CASE("semi-implicit: Terzaghi within 1 % of the load in a nineteenth of the steps") {
+  const Real stiffness = verify::oedometric_modulus(10e6, 0.33), load = 1e4;
+  const Real pores = verify::table1::porosity / verify::table1::bulk_modulus;
+  const Real factor = 1 / (1 + stiffness * pores);
+  for (const Real k : {1e-3, 1e-4}) {
+    auto solver = terzaghi(k, load, factor);
+    for (const Real tv : {0.05, 0.1, 0.3, 0.6}) {
+      solver.advance_to(tv * 9810 * (1 / stiffness + pores) / k);
+      verify::Norm norm;
+      verify::for_cells(solver, vd::CellKind::soil, [&](const auto& cell) {
+        const Real depth = 1 - cell.centroid[0];
+        norm.add(end_pressure(cell) / load -
+                 factor * verify::terzaghi_mean(depth - 0.05, depth + 0.05, tv));
+      });
+      MESSAGE("k ", k, " Tv ", tv, ": rms ", 100 * norm.rms(), " % of the load, steps ",
+              solver.steps());
+      CHECK(norm.rms() <= 0.01);
+      check_ledger(solver);
+    }
+    if (k == 1e-3) CHECK(solver.steps() <= 14853 / 15);  // the explicit scheme's
+  }
+}
+
+TEST_CASE("semi-implicit: 10 m of rigid clay under a pond, 400 s in at most 800 steps") {
+  check_pond<Rigid>("rigid_pond0.5", 400, 0.2155, 800);
+}
+
+TEST_CASE("semi-implicit: rain below and above what sand can take") {
+  auto below = rained(0.1, 0.3e-4);
+  for (const Real t : {600.0, 1500.0, 3000.0, 4500.0}) {
+    below.advance_to(t);
+    const auto w = below.water_balance();
+    const Real error = rain_error(below, "rain0.3", 0.1);
+    MESSAGE("0.3 k, t ", t, ": rms S ", error, ", steps ", below.steps());
+    CHECK(error <= 0.015);
+    CHECK(verify::close((w.pore - w.initial) / 1000, richards("rain0.3", t, "inflow_m"), 0.01));
+    check_ledger(below);
+  }
+  auto above = rained(0.05, 3e-4);
+  for (const Real t : {300.0, 600.0, 1200.0}) {
+    above.advance_to(t);
+    const auto w = above.water_balance();
+    MESSAGE("3 k, t ", t, ": pond ", (w.film + w.free) / 1000, " m, Richards ",
+            richards("rain3", t, "pond_m"), ", taken ", (w.pore - w.initial) / 1000, ", Richards ",
+            richards("rain3", t, "inflow_m"), ", steps ", above.steps());
+    CHECK(verify::close((w.film + w.free) / 1000, richards("rain3", t, "pond_m"), 0.05));
+    CHECK(verify::close((w.pore - w.initial) / 1000, richards("rain3", t, "inflow_m"), 0.02));
+    check_ledger(above);
+  }
+}
+
+TEST_CASE("semi-implicit: still water over soil stays still") {
+  for (const Real jitter : {0.0, 0.2}) {
+    auto solver = resting(jitter);
+    solver.equilibrate({.tolerance = 1e-9, .max_time = 1});
+    const Real error = run_at_rest(solver, 1);
+    MESSAGE("jitter ", jitter, ": largest |dp| ", error, " Pa, steps ", solver.steps());
+    CHECK(error <= (jitter > 0 ? 25 : 1e-3));
+    check_ledger(solver);
+  }
+}
+
+TEST_CASE("semi-implicit: undrained strip load without checkerboard") {
+  const auto coarse = strip_load(20), fine = strip_load(40);
+  const auto at = [&](int i, int j) { return coarse[static_cast<std::size_t>(i + 20 * j)]; };
+  Real coherent = 0;
+  int count = 0;
+  for (int j = 1; j < 8; ++j)
+    for (int i = 1; i < 19; ++i) {
+      const Real residual =
+          at(i, j) - 0.5 * (at(i - 1, j) + at(i + 1, j) + at(i, j - 1) + at(i, j + 1)) +
+          0.25 * (at(i - 1, j - 1) + at(i + 1, j - 1) + at(i - 1, j + 1) + at(i + 1, j + 1));
+      coherent += ((i + j) % 2 ? -1 : 1) * residual / 4;
+      ++count;
+    }
+  MESSAGE("coherent checkerboard ", 100 * coherent / count, " % of the load");
+  CHECK(std::fabs(coherent / count) <= 1e-3);
+  for (int j = 4; j < 9; ++j) {  // cells beside the axis of the load
+    Real mean = 0;
+    for (int k = 0; k < 4; ++k)
+      mean += 0.25 * fine[static_cast<std::size_t>(k % 2 + 40 * (2 * j + k / 2))];
+    MESSAGE("depth ", 0.95 - 0.1 * j, " m: p/q ", at(0, j), ", finer ", mean);
+    CHECK(verify::close(at(0, j), mean, 0.02));
+  }
+}
+
+TEST_CASE("semi-implicit: same bits for any number of threads") {
+  std::vector<Real> first;
+  for (const int threads : {1, 2, 3}) {
+    auto solver = resting(0.2, threads);
+    for (int i = 0; i < 40; ++i) REQUIRE(solver.step().status == vd::Status::ok);
+    std::vector<Real> values;
+    solver.liquid().for_each([&](std::size_t b, int l) {
+      for (int d = 0; d < 2; ++d)
+        values.push_back(solver.liquid().at(vd::field::velocity, b, d)[l]);
+      values.push_back(solver.liquid().at(vd::field::liquid_pressure, b)[l]);
+    });
+    if (threads == 1) first = values;
+    CHECK(values == first);
+  }
+}
+
+TEST_SUITE("long") {
+  TEST_CASE("semi-implicit: 10 m of elastic clay under a pond") {
+    check_pond<Elastic>("full_pond0.5", 500, 0.1402, 250000);
+  }
+}
