@@ -118,14 +118,15 @@ void put_sums(A& a, Sums& sums) {
 
 template <class A, class R>
 void put_report(A& a, R& report) {
-  auto& [status, time, dt, limit, step, trouble] = report;  // no trouble in a run that is saved
+  auto& [status, time, dt, limit, step, trouble, solve] =
+      report;  // no trouble in a run that is saved
   put_number(a, "time of the last step", time);
   put_number(a, "length of the last step", dt);
   auto number = static_cast<std::uint8_t>(limit);
   a.value("limit of the last step", number);
   a.value("number of the last step", step);
   if constexpr (A::reading) {
-    if (number > static_cast<std::uint8_t>(StepLimit::user))
+    if (number > static_cast<std::uint8_t>(StepLimit::retry))
       a.refuse("limit of the last step", "does not exist");
     limit = static_cast<StepLimit>(number);
     status = Status::ok;
@@ -140,14 +141,15 @@ void put_run(A& a, S& state, R& memory) {
   // Elsewhere: solid, liquid; nodes (what outlives a step). From the scene: soils, fluid, water,
   // gravity, factors, roughness. From the options: transfer, options. Made anew: grid, special,
   // factor_values, flip_share, free_memory, tiles, trouble.
-  auto& [grid, nodes, solid, liquid, soils, fluid, transfer, water, gravity, options, time, dt,
-         flip_share, free_memory, step, slack, frozen, limited_water, open_impulse, loads, factors,
-         factor_values, special, held, films, columns, roughness, lost_water, lost_solid, rain,
-         added_water, added_solid, next_liquid_id, tiles, sums, trouble] = state;
+  auto& [grid, nodes, system, solid, liquid, soils, fluid, transfer, water, gravity, options, time,
+         dt, flip_share, free_memory, step, slack, frozen, limited_water, open_impulse, loads,
+         factors, factor_values, special, held, films, columns, roughness, lost_water, lost_solid,
+         rain, added_water, added_solid, next_liquid_id, tiles, sums, trouble] = state;
   auto& [start, initial_water, initial_solid, last] = memory;
 
   put_number(a, "time", time);
   put_number(a, "step length", dt);
+  put_number(a, "next step by its error", system.next_dt);
   a.value("number of steps", step);
   put_number(a, "motion since the last sort", slack);
   put_flag(a, "frozen", frozen);
