@@ -87,8 +87,9 @@ inline void check_columns(const std::string& path, int dim, std::size_t coordina
 inline void write_vtk_head(File& file, const std::string& kind, std::string_view comment) {
   file.write("<?xml version=\"1.0\"?>\n");
   if (!comment.empty()) {
-    std::string text(comment);
-    for (std::size_t at; (at = text.find("--")) != std::string::npos;) text.replace(at, 2, "- ");
+    std::string text;  // no two dashes in a row
+    for (std::size_t i = 0; i < comment.size(); ++i)
+      text.push_back(i > 0 && comment[i] == '-' && comment[i - 1] == '-' ? ' ' : comment[i]);
     file.write("<!-- " + text + " -->\n");
   }
   file.write("<VTKFile type=\"" + kind +
