@@ -465,7 +465,7 @@ Real evaluate_trial(State<M>& state) {
 /// Derivative of a head gradient at a node to the pressure of a cell beside the face; 0 where that
 /// pressure is held or has no effect.
 template <class M>
-Real head_slope(const State<M>& state, const FaceFlux& face, bool above) noexcept {
+Real head_slope([[maybe_unused]] const State<M>& state, const FaceFlux& face, bool above) noexcept {
   const bool soil_side = face.kind == FaceKind::inside || face.soil_below != above;
   if (!soil_side && face.kind == FaceKind::surface) return 0;
   if (!soil_side && !(face.held_pressure > 0)) return 0;

@@ -118,7 +118,7 @@ class Solver {
     state_.transfer = options.transfer;
     state_.options = {options.courant, options.damping,         options.displacement_cap,
                       options.dt_max,  options.free_relaxation, options.threads,
-                      options.escaped, options.resampling, options.saturation_step};
+                      options.escaped, options.resampling,      options.saturation_step};
     detail::assemble(state_, scene);
     collect_walls(scene);
     state_.tiles.resize(static_cast<std::size_t>(2 * options.threads));
