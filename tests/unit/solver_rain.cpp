@@ -163,7 +163,7 @@ TEST_CASE("springs on a slope feed films, and the water is counted where it goes
   MESSAGE("springs: pore ", w.pore - w.initial, " kg, free ", w.free, ", film ", w.film,
           ", closure ", w.relative_closure());
   CHECK(w.rain == 0);
-  CHECK(w.free + w.film > 0.01 * w.initial);
+  CHECK(w.free + w.film > 1);  // [kg]
   check_closed(w);
   open.add(vd::bc::SeepageFace{});
   vd::Solver<Strip> drained(open);
@@ -171,7 +171,7 @@ TEST_CASE("springs on a slope feed films, and the water is counted where it goes
   w = drained.water_balance();
   MESSAGE("seepage face: out ", w.outflow, " kg, in ", w.inflow, ", closure ",
           w.relative_closure());
-  CHECK(w.outflow > 0.01 * w.initial);
+  CHECK(w.outflow > 1);  // [kg]
   CHECK(w.inflow == 0);
   check_closed(w);
 }
