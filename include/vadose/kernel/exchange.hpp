@@ -140,9 +140,10 @@ void find_flux(const State<M>& state, const CellView<M>& view, int axis, FaceFlu
     return;
   }
   Real flux = nodal_flux(state, view, axis, face);
-  // Water enters or leaves at a held pressure only down its head gradient, but for its inertia.
+  // Water enters or leaves at a held pressure only down its head gradient, but for its inertia, which
+  // takes it nowhere that is open one way only.
   if (face.kind == FaceKind::surface && flux * face.head_gradient > 0)
-    flux *= inertia_share(state, view, axis, face);
+    flux *= face.one_way || face.fed ? 0 : inertia_share(state, view, axis, face);
   face.flux = face.area * flux;
   if (face.fed)  // no more than there is
     face.flux = face.soil_below ? max(face.flux, -face.supply) : min(face.flux, face.supply);
