@@ -140,10 +140,13 @@ void find_flux(const State<M>& state, const CellView<M>& view, int axis, FaceFlu
     return;
   }
   Real flux = nodal_flux(state, view, axis, face);
-  // Water enters or leaves at a held pressure only down its head gradient, but for its inertia, which
-  // takes it nowhere that is open one way only.
-  if (face.kind == FaceKind::surface && flux * face.head_gradient > 0)
-    flux *= face.one_way || face.fed ? 0 : inertia_share(state, view, axis, face);
+  // Water enters or leaves at a held pressure only down its head gradient, but for its inertia where
+  // it may pass both ways anywhere.
+  if (face.kind == FaceKind::surface && flux * face.head_gradient > 0) {
+    const bool both = face.held >= 0 && !face.fed &&
+                      state.held[static_cast<std::size_t>(face.held)].kind == HeldKind::open;
+    flux *= both ? inertia_share(state, view, axis, face) : 0;
+  }
   face.flux = face.area * flux;
   if (face.fed)  // no more than there is
     face.flux = face.soil_below ? max(face.flux, -face.supply) : min(face.flux, face.supply);
