@@ -246,6 +246,28 @@ const PressureUnknown<State<M>::dim>* own_unknown(const State<M>& state, std::in
   return row < 0 ? nullptr : &state.system.unknowns[static_cast<std::size_t>(row)];
 }
 
+/// Changes of the pressure gradients at a node, G of the pressure and G_S of S p [N].
+template <class M>
+void gradient_changes(const State<M>& state, const CellView<M>& view, Real (&force)[State<M>::dim],
+                      Real (&bishop)[State<M>::dim]) {
+  constexpr int dim = State<M>::dim;
+  const auto& r = state.system.response[static_cast<std::size_t>(view.entry())];
+  Real reference = 0;
+  for (int d = 0; d < dim; ++d) force[d] = bishop[d] = 0;
+  for_cells_around(view, [&](int corner, std::int32_t e) {
+    const auto* u = own_unknown(state, e);
+    if (!u) return;
+    for (int d = 0; d < dim; ++d) {
+      force[d] += u->quad_change * u->weight[corner][d];
+      bishop[d] += u->bishop_change * u->weight[corner][d];
+    }
+    const auto& cell = state.nodes.cell[static_cast<std::size_t>(e)];
+    if (cell.has_reference) reference += cell.reference_share * (u->pressure - u->start);
+  });
+  if (r.references > 0)
+    for (int d = 0; d < dim; ++d) force[d] -= reference / r.references * r.gradient[d];
+}
+
 /// Velocities of one node at the trial pressures.
 template <class M>
 void respond_node(State<M>& state, const CellView<M>& view) {
@@ -254,20 +276,10 @@ void respond_node(State<M>& state, const CellView<M>& view) {
   const auto i = static_cast<std::size_t>(view.entry());
   const auto& r = state.system.response[i];
   if (!r.active) return;
-  Real force[dim] = {}, bishop[dim] = {}, reference = 0;
-  for_cells_around(view, [&](int corner, std::int32_t e) {
-    const auto* u = own_unknown(state, e);
-    if (!u) return;
-    for (int d = 0; d < dim; ++d) {
-      force[d] += u->quad_change * u->weight[corner][d];
-      bishop[d] += u->bishop_change * u->weight[corner][d];
-    }
-    const auto& cell = nodes.cell[static_cast<std::size_t>(e)];
-    if (cell.has_reference) reference += cell.reference_share * (u->pressure - u->start);
-  });
+  Real force[dim], bishop[dim];
+  gradient_changes(state, view, force, bishop);
   Real liquid_force[dim], solid_force[dim], liquid[dim], solid[dim];
   for (int d = 0; d < dim; ++d) {
-    if (r.references > 0) force[d] -= reference / r.references * r.gradient[d];
     liquid_force[d] = r.liquid_part * force[d];
     solid_force[d] = r.bishop_part * bishop[d] - r.pore_part[d] * force[d];
   }
@@ -749,6 +761,30 @@ void restore_pressures(State<M>& state) {
     cell.pressure = u.start;
     cell.quad_pressure = u.start_quad;
   });
+}
+
+/// Adds what no phase takes of the changes of pressure, as advance_nodes does of the pressures
+/// before the step.
+template <class M>
+void count_open_impulse(State<M>& state) {
+  constexpr int dim = State<M>::dim;
+  auto& open = state.nodes.open_impulse;
+  open.assign(static_cast<std::size_t>(state.grid.slots() * dim), 0);
+  for_cells(state.grid, state.options.threads,
+            [&](std::int32_t e, const Index<dim>& local, int slot, int) {
+              const auto& r = state.system.response[static_cast<std::size_t>(e)];
+              if (!r.active) return;
+              Real force[dim], bishop[dim];
+              gradient_changes(state, CellView<M>(state, local, slot), force, bishop);
+              for (int d = 0; d < dim; ++d) {
+                const Real full = bishop[d] - r.liquid_part * force[d];
+                const Real taken =
+                    r.grains ? r.bishop_part * bishop[d] - r.pore_part[d] * force[d] : 0;
+                open[static_cast<std::size_t>(slot * dim + d)] += state.dt * (full - taken);
+              }
+            });
+  for (std::size_t i = 0; i < open.size(); ++i)
+    state.open_impulse[static_cast<int>(i % dim)] += open[i];
 }
 
 /// What the points need to know of the solution.

@@ -29,8 +29,13 @@ struct SemiImplicit {
       kernel::find_pressures(state);  // (g) of the last step: water in the cells, p, S
       kernel::StableStep stable = kernel::implicit_step(state);
       stable.take(dt_limit, StepLimit::user);
-      while (!predict_and_solve(state, stable)) {
+      kernel::begin_step(state, stable.dt);
+      kernel::map_liquid(state);  // (a) liquid to nodes
+      if constexpr (is_deformable<M>) {
+        kernel::map_solid(state);  // (a) solid to nodes
+        kernel::map_loads(state);  //     traction
       }
+      while (!predict_and_solve(state, stable)) kernel::begin_step(state, stable.dt);
       if (state.sums[0].failed) return stable;
       book(state);
       if constexpr (is_deformable<M>) {
@@ -48,13 +53,7 @@ struct SemiImplicit {
   template <class M>
   static bool predict_and_solve(State<M>& state, kernel::StableStep& stable) {
     const Vec<State<M>::dim> open_impulse = state.open_impulse;
-    kernel::begin_step(state, stable.dt);
     if constexpr (has_skeleton<M>) kernel::find_faces(state);  // (c) k and S between cells
-    kernel::map_liquid(state);                                 // (a) liquid to nodes
-    if constexpr (is_deformable<M>) {
-      kernel::map_solid(state);  // (a) solid to nodes
-      kernel::map_loads(state);  //     traction
-    }
     if (state.frozen) {
       kernel::advance_nodes(state);
       kernel::find_rates(state);
@@ -64,6 +63,7 @@ struct SemiImplicit {
     kernel::advance_nodes<true>(state);  // (b), (d), (e): forces, drag, walls, velocities
     const bool solved = kernel::solve_pressures(state);
     if (solved && control_step(state, stable)) {
+      kernel::count_open_impulse(state);
       kernel::accept_pressures(state);
       return true;
     }
