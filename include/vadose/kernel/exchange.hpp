@@ -56,21 +56,13 @@ Real face_mobility(const State<M>& state, const FaceFlux& face, Real porosity,
               unit_weight / face.conductivity);
 }
 
-/// Entry of the soil cell at a boundary face.
-template <class M>
-std::int32_t soil_at(const CellView<M>& view, int axis, const FaceFlux& face) noexcept {
-  return face.soil_below ? view.neighbour(axis, -1) : view.entry();
-}
-
 /// Part of the liquid's velocity at a boundary face that is left after a step of drag alone:
 /// [1 + dt n S gamma / (rho k)]^-1, 0 in the drag limit.
 template <class M>
 Real inertia_share(const State<M>& state, const CellView<M>& view, int axis,
                    const FaceFlux& face) noexcept {
   if (!(face.conductivity > 0)) return 0;
-  const auto& nodes = state.nodes;
-  const std::int32_t owner = nodes.dof[static_cast<std::size_t>(soil_at(view, axis, face))];
-  const auto& soil = nodes.cell[static_cast<std::size_t>(owner)];
+  const auto& soil = soil_cell(view, axis, face);
   return 1 / (1 + state.dt * soil.porosity * face.saturation *
                       state.soils[soil.material].material.unit_weight /
                       (state.water.density * face.conductivity));

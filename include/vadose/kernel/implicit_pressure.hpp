@@ -345,14 +345,6 @@ SwitchedFlux switched_flux(const State<M>& state, const Cell<State<M>::dim>& soi
   return {potential, -mobility};
 }
 
-/// The soil cell at a surface face.
-template <class M>
-const Cell<State<M>::dim>& soil_at(const State<M>& state, const CellView<M>& view, int axis,
-                                   const FaceFlux& face) noexcept {
-  const std::int32_t e = face.soil_below ? view.neighbour(axis, -1) : view.entry();
-  return state.nodes.cell[static_cast<std::size_t>(state.nodes.dof[static_cast<std::size_t>(e)])];
-}
-
 /// All face fluxes at the trial pressures.
 template <class M>
 void find_implicit_fluxes(State<M>& state) {
@@ -365,7 +357,7 @@ void find_implicit_fluxes(State<M>& state) {
           FaceFlux& face =
               state.nodes.face[static_cast<std::size_t>(e) * dim + static_cast<std::size_t>(d)];
           if (switches(face)) {
-            const Real in = switched_flux(state, soil_at(state, view, d, face), d, face).value;
+            const Real in = switched_flux(state, soil_cell(view, d, face), d, face).value;
             face.flux = face.soil_below ? -in : in;
           } else if (face.kind == FaceKind::closed || face.is_shut()) {
             face.flux = 0;

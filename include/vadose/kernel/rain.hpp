@@ -150,6 +150,21 @@ std::size_t column_at_face(const State<M>& state, const CellView<M>& view, int a
   return column_of(state.grid, cell);
 }
 
+/// Entry of the soil cell at a boundary face.
+template <class M>
+std::int32_t soil_at(const CellView<M>& view, int axis, const FaceFlux& face) noexcept {
+  return face.soil_below ? view.neighbour(axis, -1) : view.entry();
+}
+
+/// The pressure cell of the soil at a boundary face.
+template <class M>
+const Cell<State<M>::dim>& soil_cell(const CellView<M>& view, int axis,
+                                     const FaceFlux& face) noexcept {
+  const auto& nodes = view.state.nodes;
+  const std::int32_t owner = nodes.dof[static_cast<std::size_t>(soil_at(view, axis, face))];
+  return nodes.cell[static_cast<std::size_t>(owner)];
+}
+
 /// Calls f(face, view, axis) for every fed face, in the order of the cells.
 template <class M, class F>
 void for_fed_faces(State<M>& state, F&& f) {
@@ -242,10 +257,8 @@ void settle_films(State<M>& state) {
   }
   for_fed_faces(state, [&](const FaceFlux& face, const CellView<M>& view, int axis) {
     if (face.flux == 0) return;
-    const std::int32_t soil = face.soil_below ? view.neighbour(axis, -1) : view.entry();
-    const auto owner = static_cast<std::size_t>(state.nodes.dof[static_cast<std::size_t>(soil)]);
     const Real into = face.soil_below ? -face.flux : face.flux;
-    const Real limit = into < 0 ? state.nodes.cell[owner].limit : 1;
+    const Real limit = into < 0 ? soil_cell(view, axis, face).limit : 1;
     state.columns[column_at_face(state, view, axis, face, into > 0)].film -=
         mass_per_flux * limit * into;
   });

@@ -72,6 +72,12 @@ struct StableStep {
 /// positions on the grid do not grow at half of this.
 inline constexpr Real cut_cell_step = 0.55;
 
+/// Part of 2/omega that a cell allows [-].
+template <int Dim>
+Real step_share(const Cell<Dim>& c) noexcept {
+  return c.at_air && (c.members > 1 || c.raw_fill < 0.95) ? cut_cell_step : 1;
+}
+
 /// Largest step of the water and the soil it fills, 2/omega, over all cells.
 template <class M>
 StableStep wet_step(const State<M>& state) {
@@ -95,8 +101,7 @@ StableStep wet_step(const State<M>& state) {
                           ? seepage_frequency2(modulus, rho, h)
                           : two_phase_frequency2(soil.p_wave_modulus, modulus, c.porosity,
                                                  c.saturation, soil.material.solid_density, rho, h);
-      const bool cut = c.at_air && (c.members > 1 || c.raw_fill < 0.95);
-      step.take((cut ? cut_cell_step : 1) * 2 / std::sqrt(w2), StepLimit::two_phase);
+      step.take(step_share(c) * 2 / std::sqrt(w2), StepLimit::two_phase);
     }
   }
   return step;
@@ -120,12 +125,10 @@ void begin_step(State<M>& state, Real dt) {
   find_factors(state);
 }
 
-/// Largest stable step of the present state, before the factor C, and motion limits after it.
+/// Waves in the dry skeleton, the factor C, and motion: the end of every search for a step.
 template <class M>
-StableStep stable_step(const State<M>& state) {
+void take_common_limits(const State<M>& state, StableStep& step) {
   const Real h = state.grid.cell_size();
-  StableStep step;
-  if constexpr (has_liquid<M>) step = wet_step(state);
   Real wave2 = 0, speed2 = 0;
   for (const StepSums& s : state.sums) {
     wave2 = max(wave2, s.max_wave2);
@@ -136,6 +139,14 @@ StableStep stable_step(const State<M>& state) {
   if (speed2 > 0)
     step.take(state.options.displacement_cap * h / std::sqrt(speed2), StepLimit::motion);
   step.take(state.options.dt_max, StepLimit::user);
+}
+
+/// Largest stable step of the present state, before the factor C, and motion limits after it.
+template <class M>
+StableStep stable_step(const State<M>& state) {
+  StableStep step;
+  if constexpr (has_liquid<M>) step = wet_step(state);
+  take_common_limits(state, step);
   return step;
 }
 
@@ -150,8 +161,7 @@ StableStep skeleton_step(const State<M>& state) {
       if (state.nodes.dof[i] != static_cast<std::int32_t>(i) || c.kind != CellKind::soil) continue;
       const auto& soil = state.soils[c.material];
       const Real wave2 = soil.p_wave_modulus / ((1 - c.porosity) * soil.material.solid_density);
-      const bool cut = c.at_air && (c.members > 1 || c.raw_fill < 0.95);
-      step.take((cut ? cut_cell_step : 1) * h / std::sqrt(wave2), StepLimit::skeleton);
+      step.take(step_share(c) * h / std::sqrt(wave2), StepLimit::skeleton);
     }
   }
   return step;
@@ -178,22 +188,12 @@ StableStep gravity_wave_step(const State<M>& state) {
 /// Largest step with implicit pressures: neither the compression of water nor the drag counts.
 template <class M>
 StableStep implicit_step(const State<M>& state) {
-  const Real h = state.grid.cell_size();
   StableStep step = skeleton_step(state);
-  Real wave2 = 0, speed2 = 0;
-  for (const StepSums& s : state.sums) {
-    wave2 = max(wave2, s.max_wave2);
-    speed2 = max(speed2, s.max_speed2);
-  }
-  if (wave2 > 0) step.take(h / std::sqrt(wave2), StepLimit::skeleton);
   const StableStep waves = gravity_wave_step(state);
   step.take(waves.dt, waves.limit);
-  step.dt *= state.options.courant;
-  if (speed2 > 0)
-    step.take(state.options.displacement_cap * h / std::sqrt(speed2), StepLimit::motion);
+  take_common_limits(state, step);
   if (state.system.next_dt > 0 && !state.frozen)
     step.take(state.system.next_dt, StepLimit::accuracy);
-  step.take(state.options.dt_max, StepLimit::user);
   return step;
 }
 
