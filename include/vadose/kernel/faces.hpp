@@ -243,25 +243,19 @@ FaceFlux find_face(const State<M>& state, const CellView<M>& view, int axis) {
   return face;
 }
 
-/// Calls f(face) for every face of a pressure cell and its slivers.
+/// Calls f(axis, face) for every face of a pressure cell and its slivers.
 template <class M, class F>
 void for_faces(const CellView<M>& view, F&& f) {
   constexpr int dim = State<M>::dim;
-  const auto& nodes = view.state.nodes;
-  const auto visit = [&](const Index<dim>& cell) {
-    const auto e = static_cast<std::size_t>(view.state.grid.entry(cell));
-    for (int d = 0; d < dim; ++d) {
-      Index<dim> above = cell;
-      ++above[d];
-      const auto ea = static_cast<std::size_t>(view.state.grid.entry(above));
-      f(nodes.face[e * dim + static_cast<std::size_t>(d)]);
-      f(nodes.face[ea * dim + static_cast<std::size_t>(d)]);
-    }
-  };
   for_members(view, [&](std::int32_t, const Index<dim>& step) {
-    Index<dim> cell = view.cell;
-    for (int d = 0; d < dim; ++d) cell[d] += step[d];
-    visit(cell);
+    int at = view.at;
+    for (int d = 0; d < dim; ++d) at += step[d] * BlockGrid<dim>::tile_stride(d);
+    for (int d = 0; d < dim; ++d)
+      for (int side = 0; side < 2; ++side) {
+        const auto e =
+            static_cast<std::size_t>(view.tile[at + side * BlockGrid<dim>::tile_stride(d)]);
+        f(d, view.state.nodes.face[e * dim + static_cast<std::size_t>(d)]);
+      }
   });
 }
 
@@ -281,7 +275,7 @@ void find_reference_pressures(State<M>& state) {
               const Real own =
                   cell.pressure + hydrostatic(state, cell.centroid, cell.surface_point);
               Real sum = 0, area = 0, shut = 0;
-              for_faces(view, [&](const FaceFlux& face) {
+              for_faces(view, [&](int, const FaceFlux& face) {
                 if (face.kind != FaceKind::surface) return;
                 sum += face.area * (face.is_shut() ? own : face.held_pressure);
                 area += face.area;

@@ -7,6 +7,10 @@
 /// fluxes and velocities at the new pressures. The residual is the ledger itself: what a solution
 /// leaves is found again in the next step, and exchanged water is conserved whatever its error.
 
+#include <algorithm>
+#include <numeric>
+#include <vector>
+
 #include <vadose/kernel/exchange.hpp>
 
 namespace vadose::kernel {
@@ -640,22 +644,6 @@ void update_pattern(State<M>& state) {
   system.matrix.set_pattern(columns);
 }
 
-/// Calls f(axis, face) for every face of a pressure cell and its slivers.
-template <class M, class F>
-void for_axis_faces(const CellView<M>& view, F&& f) {
-  constexpr int dim = State<M>::dim;
-  for_members(view, [&](std::int32_t, const Index<dim>& step) {
-    int at = view.at;
-    for (int d = 0; d < dim; ++d) at += step[d] * BlockGrid<dim>::tile_stride(d);
-    for (int d = 0; d < dim; ++d)
-      for (int side = 0; side < 2; ++side) {
-        const auto e =
-            static_cast<std::size_t>(view.tile[at + side * BlockGrid<dim>::tile_stride(d)]);
-        f(d, view.state.nodes.face[e * dim + static_cast<std::size_t>(d)]);
-      }
-  });
-}
-
 /// Derivatives of all residuals (times -1).
 template <class M>
 void assemble_matrix(State<M>& state) {
@@ -683,7 +671,7 @@ void assemble_matrix(State<M>& state) {
     });
     if constexpr (has_skeleton<M>) {
       if (u.free || !cell.has_reference) return;
-      for_axis_faces(view, [&](int axis, const FaceFlux& face) {
+      for_faces(view, [&](int axis, const FaceFlux& face) {
         if (switches(face))
           system.matrix.add(row, row, -state.dt * switched_flux(state, cell, axis, face).slope);
       });
@@ -742,7 +730,8 @@ Real saturation_change(State<M>& state) {
       const Real saturation = min(1.0, sums[lane::content] / (pores * compression));
       system.worst[row] = std::fabs(saturation - cell.saturation);
     });
-    return *std::max_element(system.worst.begin(), system.worst.end());
+    return std::accumulate(system.worst.begin(), system.worst.end(), 0.0,
+                           [](Real a, Real b) { return max(a, b); });
   }
 }
 
