@@ -22,6 +22,8 @@ struct Elastic : vd::UnsaturatedModel<vd::Uniaxial> {
   using Skeleton = vd::law::LinearElastic;
 };
 
+struct Dry : vd::DryModel<vd::Uniaxial> {};
+
 constexpr Real gravity = 9.81;
 
 /// Pressure of a cell at the end of the last step [Pa].
@@ -326,6 +328,25 @@ TEST_CASE("semi-implicit: same bits for any number of threads") {
     if (threads == 1) first = values;
     CHECK(values == first);
   }
+}
+
+TEST_CASE("dry soil takes the explicit step, to the last bit") {
+  vd::Scene<Dry> scene({.box = {Vec<1>(0.0), Vec<1>(1.2)}, .cell_size = 0.1});
+  scene.gravity = Vec<1>(-gravity);
+  scene.add_soil(vd::box(Vec<1>(0.0), Vec<1>(1.0)),
+                 {.solid_density = 2600,
+                  .porosity = 0.4,
+                  .skeleton = {.young_modulus = 1e7, .poisson_ratio = 0.3}});
+  scene.add(vd::bc::Fixed{.face = vd::Face::bottom});
+  vd::Solver<Dry, SemiImplicit> solver(scene);
+  vd::Solver<Dry> explicit_solver(scene);
+  for (int i = 0; i < 50; ++i) CHECK(solver.step().dt == explicit_solver.step().dt);
+  CHECK(solver.last_step().solve.newton == 0);
+  solver.solid().for_each([&](std::size_t b, int l) {
+    CHECK(solver.solid().at(vd::field::position, b)[l] ==
+          explicit_solver.solid().at(vd::field::position, b)[l]);
+    CHECK(solver.displacement(b, l)[0] < 0);
+  });
 }
 
 TEST_SUITE("long") {
