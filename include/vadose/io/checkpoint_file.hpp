@@ -38,7 +38,7 @@ inline std::uint64_t checksum(const void* data, std::size_t bytes) noexcept {
     mix(word);
   }
   std::uint64_t rest = 0;
-  std::memcpy(&rest, p, bytes);
+  if (bytes > 0) std::memcpy(&rest, p, bytes);
   mix(rest);
   return sum;
 }
