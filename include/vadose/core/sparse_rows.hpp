@@ -135,7 +135,7 @@ class SparseSolver {
   /// What a solution took.
   struct Outcome {
     int iterations = 0;
-    Real residual = 0;  ///< |b - A x| / |b| as the iteration has it [-]
+    Real residual = 0;  ///< |b - A x| / |b| as the iteration has it [-]; NaN: it broke down
   };
 
   /// x = A^-1 b to |b - A x| <= tolerance |b|.
@@ -149,11 +149,19 @@ class SparseSolver {
     shadow_ = b;
     const Real scale = std::sqrt(dot(b, b, threads));
     if (!(scale > 0)) return {};
-    Real rho = 1, alpha = 1, omega = 1;
+    Real rho = 1, alpha = 1, omega = 1, shadow = scale;
     Outcome out{0, 1};
     while (out.iterations < max_iterations) {
       ++out.iterations;
-      const Real next = dot(shadow_, r_, threads);
+      Real next = dot(shadow_, r_, threads);
+      const Real left = out.residual * scale;
+      if (std::fabs(next) < 1e-12 * shadow * left) {  // all but orthogonal: start anew from here
+        shadow_ = r_;
+        shadow = left;
+        next = left * left;
+        rho = alpha = omega = 1;
+        for (auto* v : {&p_, &v_}) v->assign(n, 0);
+      }
       const Real beta = next / rho * (alpha / omega);
       rho = next;
       each(n, threads, [&](std::size_t i) { p_[i] = r_[i] + beta * (p_[i] - omega * v_[i]); });
