@@ -96,10 +96,11 @@ use_ninja() {
   fi
 }
 
+# configure_release [argument of cmake]...
 configure_release() {
   say "configuring $build ($cxx)"
   use_ninja "$build"
-  cmake --preset release -B "$build" -DCMAKE_CXX_COMPILER="$cxx" || fail "configure"
+  cmake --preset release -B "$build" -DCMAKE_CXX_COMPILER="$cxx" "$@" || fail "configure"
 }
 
 cxx=${CXX:-g++}

@@ -8,9 +8,10 @@ cd "$(dirname "$0")/.."
 . ./cmake/prepare.sh
 
 labels='^long$'
+long=OFF
 for argument in "$@"; do
   case "$argument" in
-    --all) labels='^$' ;;
+    --all) labels='^$' long=ON ;;
     *)
       printf 'usage: sh tests/run.sh [--all]\n' >&2
       exit 2
@@ -19,7 +20,7 @@ for argument in "$@"; do
 done
 
 require_packages
-configure_release
+configure_release -DVADOSE_LONG_TESTS="$long"
 say "building"
 cmake --build "$build" --parallel 2 || fail "build"
 say "testing"

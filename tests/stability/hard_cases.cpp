@@ -3,6 +3,7 @@
 
 #include <doctest/doctest.h>
 
+#include "../seepage.hpp"
 #include "tests/verify/verify_support.hpp"
 
 #include <vadose/policy/law/drucker_prager.hpp>
@@ -13,15 +14,13 @@ namespace vd = vadose;
 using vd::Real;
 using vd::Vec;
 
-struct Wet : vd::SaturatedModel<vd::PlaneStrain> {};
-struct Dry : vd::DryModel<vd::PlaneStrain> {};
-struct Bar : vd::DryModel<vd::Uniaxial> {};
+using Wet = vd::SaturatedModel<vd::PlaneStrain>;
+using Dry = vd::DryModel<vd::PlaneStrain>;
+using Bar = vd::DryModel<vd::Uniaxial>;
 struct Sand : vd::DryModel<vd::Uniaxial> {
   using Skeleton = vd::law::DruckerPrager;
 };
-struct Seepage : vd::UnsaturatedModel<vd::Uniaxial> {
-  using Skeleton = vd::law::Rigid;
-};
+using Seepage = vadose_test::Seepage<vd::Uniaxial>;
 
 constexpr Real load = 1e4, cell_size = 0.1;
 

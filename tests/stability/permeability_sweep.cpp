@@ -12,7 +12,7 @@ using vd::Real;
 using vd::Vec;
 
 template <class K>
-struct Saturated : vd::SaturatedModel<K> {};
+using Saturated = vd::SaturatedModel<K>;
 
 constexpr Real load = 1e4, cell_size = 0.1;
 

@@ -19,7 +19,7 @@ struct Dry : vd::DryModel<vd::Uniaxial> {
 struct Wet : vd::SaturatedModel<vd::Uniaxial> {
   using Shape = vd::shape::Linear;
 };
-struct WetPlane : vd::SaturatedModel<vd::PlaneStrain> {};
+using WetPlane = vd::SaturatedModel<vd::PlaneStrain>;
 
 constexpr long allowed_steps = 1000;
 

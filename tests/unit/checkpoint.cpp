@@ -14,6 +14,7 @@
 #include <vadose/policy/law/drucker_prager.hpp>
 
 #include "../error_message.hpp"
+#include "../seepage.hpp"
 #include "restart_support.hpp"
 
 namespace {
@@ -35,9 +36,7 @@ struct Slope : vd::UnsaturatedModel<vd::PlaneStrain> {
   using Transfer = vd::transfer::Tpic;
   using SolidUserFields = vd::FieldSet<vd::Sized<Temperature, 2>>;
 };
-struct Column : vd::UnsaturatedModel<vd::Uniaxial> {
-  using Skeleton = vd::law::Rigid;
-};
+using Column = vadose_test::Seepage<vd::Uniaxial>;
 
 vd::Material<Slope> sand() {
   return {.name = "sand",

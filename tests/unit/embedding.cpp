@@ -6,6 +6,7 @@
 
 #include <thread>
 
+#include "../seepage.hpp"
 #include "restart_support.hpp"
 
 namespace {
@@ -13,9 +14,7 @@ namespace {
 namespace vd = vadose;
 using vd::Real;
 
-struct Column : vd::UnsaturatedModel<vd::Uniaxial> {
-  using Skeleton = vd::law::Rigid;
-};
+using Column = vadose_test::Seepage<vd::Uniaxial>;
 using S = vd::Solver<Column>;
 
 S column(Real saturation) {

@@ -12,6 +12,7 @@
 #include <map>
 #include <random>
 #include <string>
+#include <type_traits>
 #include <vector>
 
 #include <vadose/policy/law/drucker_prager.hpp>
@@ -253,27 +254,28 @@ inline bool same_bits(const std::vector<double>& a, const std::vector<double>& b
 // ---------------------------------------------------------------------------------------------
 // Models and materials.
 
-template <class K, class Law = vadose::law::LinearElastic, class Tr = vadose::transfer::Flip,
-          class Sh = vadose::shape::Gimp>
-struct Dry : vadose::DryModel<K> {
+/// A preset with other policies; the preset itself where they are its own, as that is compiled already.
+template <class Preset, class Law, class Tr, class Sh>
+struct Changed : Preset {
   using Skeleton = Law;
   using Transfer = Tr;
   using Shape = Sh;
 };
+template <class Preset, class Law, class Tr, class Sh>
+using With = std::conditional_t<std::is_same_v<Law, typename Preset::Skeleton> &&
+                                    std::is_same_v<Tr, typename Preset::Transfer> &&
+                                    std::is_same_v<Sh, typename Preset::Shape>,
+                                Preset, Changed<Preset, Law, Tr, Sh>>;
+
 template <class K, class Law = vadose::law::LinearElastic, class Tr = vadose::transfer::Flip,
           class Sh = vadose::shape::Gimp>
-struct Saturated : vadose::SaturatedModel<K> {
-  using Skeleton = Law;
-  using Transfer = Tr;
-  using Shape = Sh;
-};
+using Dry = With<vadose::DryModel<K>, Law, Tr, Sh>;
 template <class K, class Law = vadose::law::LinearElastic, class Tr = vadose::transfer::Flip,
           class Sh = vadose::shape::Gimp>
-struct Unsaturated : vadose::UnsaturatedModel<K> {
-  using Skeleton = Law;
-  using Transfer = Tr;
-  using Shape = Sh;
-};
+using Saturated = With<vadose::SaturatedModel<K>, Law, Tr, Sh>;
+template <class K, class Law = vadose::law::LinearElastic, class Tr = vadose::transfer::Flip,
+          class Sh = vadose::shape::Gimp>
+using Unsaturated = With<vadose::UnsaturatedModel<K>, Law, Tr, Sh>;
 
 /// A soft soil; a Drucker-Prager one slides and yields in these tests.
 template <class M>

@@ -12,9 +12,9 @@ namespace vd = vadose;
 using vd::Real;
 using vd::Vec;
 
-struct DryPlane : vd::DryModel<vd::PlaneStrain> {};
-struct DryBar : vd::DryModel<vd::Uniaxial> {};
-struct WetBar : vd::UnsaturatedModel<vd::Uniaxial> {};
+using DryPlane = vd::DryModel<vd::PlaneStrain>;
+using DryBar = vd::DryModel<vd::Uniaxial>;
+using WetBar = vd::UnsaturatedModel<vd::Uniaxial>;
 
 template <class Solver>
 Real mean_velocity(const Solver& solver, int axis) {

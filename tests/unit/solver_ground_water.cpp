@@ -7,6 +7,8 @@
 
 #include <vadose/solver/solver.hpp>
 
+#include "../seepage.hpp"
+
 namespace {
 
 namespace vd = vadose;
@@ -14,15 +16,10 @@ using vd::Face;
 using vd::Real;
 using vd::Vec;
 
-template <class K>
-struct Seepage : vd::UnsaturatedModel<K> {
-  using Skeleton = vd::law::Rigid;
-};
+using vadose_test::Seepage;
 using Column = Seepage<vd::Uniaxial>;
 using Strip = Seepage<vd::PlaneStrain>;
-struct Elastic : vd::UnsaturatedModel<vd::Uniaxial> {
-  using Skeleton = vd::law::LinearElastic;
-};
+using Elastic = vd::UnsaturatedModel<vd::Uniaxial>;
 
 /// Sand of 1 m height with a water table; softened water.
 template <class M>

@@ -9,16 +9,15 @@
 
 #include <vadose/solver/solver.hpp>
 
+#include "../seepage.hpp"
+
 namespace {
 
 namespace vd = vadose;
 using vd::Real;
 using vd::Vec;
 
-template <class K>
-struct Seepage : vd::UnsaturatedModel<K> {
-  using Skeleton = vd::law::Rigid;
-};
+using vadose_test::Seepage;
 using Column = Seepage<vd::Uniaxial>;
 using Strip = Seepage<vd::PlaneStrain>;
 

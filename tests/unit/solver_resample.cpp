@@ -6,6 +6,7 @@
 
 #include <cmath>
 
+#include "../seepage.hpp"
 #include "kernel_support.hpp"
 
 namespace {
@@ -18,9 +19,7 @@ template <class K, class Tr>
 struct Water : vd::FreeWaterModel<K> {
   using Transfer = Tr;
 };
-struct Pond : vd::UnsaturatedModel<vd::Uniaxial> {
-  using Skeleton = vd::law::Rigid;
-};
+using Pond = vadose_test::Seepage<vd::Uniaxial>;
 
 /// A tank of water with points of very unequal mass and random motion, one step old.
 template <class M>

@@ -13,9 +13,7 @@ using vd::Real;
 using vd::Vec;
 
 template <class K>
-struct Soil : vd::UnsaturatedModel<K> {
-  using Skeleton = vd::law::LinearElastic;
-};
+using Soil = vd::UnsaturatedModel<K>;
 using Moving = Soil<vd::Uniaxial>;
 using Turning = Soil<vd::PlaneStrain>;
 

@@ -4,6 +4,7 @@
 
 #include <doctest/doctest.h>
 
+#include "../seepage.hpp"
 #include "verify_support.hpp"
 
 namespace {
@@ -12,10 +13,7 @@ namespace vd = vadose;
 using vd::Real;
 using vd::Vec;
 
-template <class K>
-struct Seepage : vd::UnsaturatedModel<K> {
-  using Skeleton = vd::law::Rigid;
-};
+using vadose_test::Seepage;
 using M1 = Seepage<vd::Uniaxial>;
 using M2 = Seepage<vd::PlaneStrain>;
 using M3 = Seepage<vd::ThreeDimensional>;

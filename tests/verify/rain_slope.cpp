@@ -5,6 +5,7 @@
 
 #include <doctest/doctest.h>
 
+#include "../seepage.hpp"
 #include "verify_support.hpp"
 
 namespace {
@@ -13,9 +14,7 @@ namespace vd = vadose;
 using vd::Real;
 using vd::Vec;
 
-struct Plane : vd::UnsaturatedModel<vd::PlaneStrain> {
-  using Skeleton = vd::law::Rigid;
-};
+using Plane = vadose_test::Seepage<vd::PlaneStrain>;
 
 constexpr Real conductivity = 1e-4, gravity = 9.81;
 

@@ -13,7 +13,7 @@ using vd::Real;
 using vd::Vec;
 
 template <class K>
-struct Ponded : vd::SaturatedModel<K> {};
+using Ponded = vd::SaturatedModel<K>;
 
 struct Case {
   Real soil_top = 1, level = 1.3;  ///< [m], multiples of h / per_axis

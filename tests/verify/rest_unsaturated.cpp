@@ -12,7 +12,7 @@ using vd::Real;
 using vd::Vec;
 
 template <class K>
-struct Moist : vd::UnsaturatedModel<K> {};
+using Moist = vd::UnsaturatedModel<K>;
 using M1 = Moist<vd::Uniaxial>;
 using M2 = Moist<vd::PlaneStrain>;
 

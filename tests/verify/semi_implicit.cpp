@@ -4,6 +4,7 @@
 
 #include <doctest/doctest.h>
 
+#include "../seepage.hpp"
 #include "verify_support.hpp"
 
 namespace {
@@ -13,16 +14,12 @@ using vd::Real;
 using vd::Vec;
 using vd::scheme::SemiImplicit;
 
-struct Saturated : vd::SaturatedModel<vd::Uniaxial> {};
-struct Strip : vd::SaturatedModel<vd::PlaneStrain> {};
-struct Rigid : vd::UnsaturatedModel<vd::Uniaxial> {
-  using Skeleton = vd::law::Rigid;
-};
-struct Elastic : vd::UnsaturatedModel<vd::Uniaxial> {
-  using Skeleton = vd::law::LinearElastic;
-};
+using Saturated = vd::SaturatedModel<vd::Uniaxial>;
+using Strip = vd::SaturatedModel<vd::PlaneStrain>;
+using Rigid = vadose_test::Seepage<vd::Uniaxial>;
+using Elastic = vd::UnsaturatedModel<vd::Uniaxial>;
 
-struct Dry : vd::DryModel<vd::Uniaxial> {};
+using Dry = vd::DryModel<vd::Uniaxial>;
 
 constexpr Real gravity = 9.81;
 

@@ -29,11 +29,18 @@ struct Variant {
   }
 };
 
-/// A model of the physics of `Physics` with the choices of a variant.
 template <class Physics, class V>
-struct With : Physics {
+struct Changed : Physics {
   using Shape = typename V::Shape;
   using Transfer = typename V::Transfer;
 };
+
+/// A model of the physics of `Physics` with the choices of a variant; `Physics` itself where these
+/// are its own, as that is compiled already.
+template <class Physics, class V>
+using With =
+    std::conditional_t<std::is_same_v<typename Physics::Shape, typename V::Shape> &&
+                           std::is_same_v<typename Physics::Transfer, typename V::Transfer>,
+                       Physics, Changed<Physics, V>>;
 
 }  // namespace verify

@@ -104,6 +104,10 @@ struct RunMemory {
 
 /// A run of model M. Construction checks the scene and throws SetupError; nothing is half built. A
 /// scheme that does not cover every scene has check(state) and check(state, HeldPressure).
+///
+/// It compiles in seconds per model. Where several source files use one model, let one compile it:
+/// `extern template class vadose::Solver<Model>;` in the header that defines Model, and
+/// `template class vadose::Solver<Model>;` in one source file.
 template <class M, class Scheme = scheme::Explicit>
 class Solver {
   static_assert(CheckModel<M>::ok);
@@ -112,23 +116,7 @@ class Solver {
   static constexpr int dim = M::Kinematics::dim;
   using Options = SolverOptions<M>;
 
-  explicit Solver(const Scene<M>& scene, const Options& options = {}) {
-    options.validate();
-    scene.validate();
-    state_.transfer = options.transfer;
-    state_.options = {options.courant, options.damping,         options.displacement_cap,
-                      options.dt_max,  options.free_relaxation, options.threads,
-                      options.escaped, options.resampling,      options.saturation_step};
-    detail::assemble(state_, scene);
-    collect_walls(scene);
-    state_.tiles.resize(static_cast<std::size_t>(2 * options.threads));
-    state_.sums.resize(static_cast<std::size_t>(options.threads));
-    sort();
-    remember_start();
-    start_wave_speed();
-    count_initial();
-    if constexpr (requires { Scheme::check(state_); }) Scheme::check(state_);
-  }
+  explicit Solver(const Scene<M>& scene, const Options& options = {});
 
   Real time() const noexcept { return state_.time; }             ///< [s]
   std::int64_t steps() const noexcept { return state_.step; }    ///< taken so far
@@ -152,35 +140,7 @@ class Solver {
   }
 
   /// One step, at most to time t_end [s]. Never throws; look at the report's status.
-  StepReport step(Real t_end = 1e300) noexcept(false) {
-    if (state_.slack > 0.25 * state_.grid.cell_size() || state_.solid.has_new() ||
-        has_new_liquid()) {
-      if constexpr (has_liquid<M>)
-        if (state_.options.resampling.on && !state_.frozen) detail::resample_water(state_);
-      sort();
-    }
-    switch_conditions();
-    state_.trouble = Trouble{};
-    const kernel::StableStep used = Scheme::step(state_, t_end - state_.time);
-    state_.time += state_.dt;
-    ++state_.step;
-    StepReport report{Status::ok,  state_.time, state_.dt,           used.limit,
-                      state_.step, {},          state_.system.report};
-    Real speed2 = 0;
-    for (const StepSums& s : state_.sums) {
-      if (s.failed) report.status = Status::failed;
-      speed2 = std::max(speed2, s.max_speed2);
-    }
-    report.trouble = state_.trouble;
-    state_.slack += state_.dt * std::sqrt(speed2);
-    detail::handle_escaped(state_);
-    if constexpr (has_liquid<M> && has_skeleton<M>) {
-      detail::gather_films(state_);
-      detail::release_films(state_);
-    }
-    memory_.last = report;
-    return report;
-  }
+  StepReport step(Real t_end = 1e300);
 
   /// Steps to time t [s] exactly; throws InstabilityError with the report of a failed step.
   void advance_to(Real t) {
@@ -208,8 +168,9 @@ class Solver {
   /// Brings the skeleton to rest under gravity and loads with the liquid state held: pressures
   /// stay, no water moves. Afterwards velocities, time and displacements are zero and the water
   /// of each point is that of its pressure at its new porosity.
+  template <class Model = M>  // a template, as not every model has it
   EquilibriumReport equilibrate(const EquilibriumOptions& o = {}) {
-    static_assert(is_deformable<M>, "vadose: equilibrate() needs a skeleton that moves");
+    static_assert(is_deformable<Model>, "vadose: equilibrate() needs a skeleton that moves");
     const Real damping = state_.options.damping;
     state_.options.damping = o.damping;
     state_.frozen = true;
@@ -321,36 +282,11 @@ class Solver {
   /// Its materials must be those of this run, by name. Counted as `added` in the ledgers; its
   /// conditions are not looked at. Where the points go should be empty. Raises SetupError and
   /// leaves the run as it was.
-  PointCount add_points(const Scene<M>& more) {
-    more.validate();
-    const std::vector<int> groups = detail::groups_of(state_, more);
-    const Real solid_before = stored_solid(), water_before = stored_water();
-    const std::size_t first = memory_.start.size() / dim;
-    const PointCount added = detail::append_bodies(state_, more, groups, first);
-    sort();
-    memory_.start.resize(memory_.start.size() + added.solid * dim, 0);
-    state_.solid.for_each([&](std::size_t b, int l) {
-      if (state_.solid.at(field::id, b)[l] >= static_cast<Real>(first)) remember_start(b, l);
-    });
-    start_wave_speed();
-    state_.added_solid += stored_solid() - solid_before;
-    state_.added_water += stored_water() - water_before;
-    return added;
-  }
+  PointCount add_points(const Scene<M>& more);
 
   /// Takes the points of both phases in a region out, between steps, and the loads there. Counted
   /// as `added` < 0 in the ledgers.
-  PointCount remove_points(const Region<dim>& region) {
-    const Real solid_before = stored_solid(), water_before = stored_water();
-    PointCount removed;
-    if constexpr (has_skeleton<M>) removed.solid = detail::remove_points(state_.solid, region);
-    if constexpr (has_liquid<M>) removed.liquid = detail::remove_points(state_.liquid, region);
-    std::erase_if(state_.loads, [&](const auto& load) { return region.contains(load.position); });
-    sort();
-    state_.added_solid += stored_solid() - solid_before;
-    state_.added_water += stored_water() - water_before;
-    return removed;
-  }
+  PointCount remove_points(const Region<dim>& region);
 
   /// What the run remembers besides its state.
   const RunMemory& memory() const noexcept { return memory_; }
@@ -403,23 +339,9 @@ class Solver {
   }
 
   /// Sorts both point sets and makes the blocks they need.
-  void sort() {
-    std::vector<char> occupied(state_.grid.block_count(), 0);
-    state_.solid.mark_blocks(state_.grid, occupied);
-    if constexpr (has_liquid<M>) state_.liquid.mark_blocks(state_.grid, occupied);
-    make_blocks(occupied);
-    const int groups = static_cast<int>(state_.soils.size()) + 1;
-    state_.solid.sort(state_.grid, groups);
-    if constexpr (has_liquid<M>) state_.liquid.sort(state_.grid, groups);
-    find_films();
-    state_.slack = 0;
-  }
+  void sort();
   /// Makes the blocks around the occupied ones, their arrays and walls.
-  void make_blocks(const std::vector<char>& occupied) {
-    state_.grid.rebuild(occupied);
-    resize_grid();
-    detail::flag_nodes(state_, walls_);
-  }
+  void make_blocks(const std::vector<char>& occupied);
 
   /// Whether there may be films on the ground.
   void find_films() {
@@ -514,7 +436,7 @@ class Solver {
   }
 
   /// Sum of nodal inertia over sum of weight (or of mass where there is no gravity).
-  Real out_of_balance() const {
+  Real out_of_balance() const requires is_deformable<M> {
     Real force = 0, weight = 0;
     const Real g = std::max(state_.gravity.norm(), 1e-3);
     for (std::size_t i = 0; i + Block<dim>::cells < state_.nodes.solid_in.size(); ++i) {
@@ -532,7 +454,7 @@ class Solver {
   }
 
   /// Zero velocity, time and displacement; water content from pressure and porosity.
-  void restart_at_rest() {
+  void restart_at_rest() requires is_deformable<M> {
     stop(state_.solid);
     if constexpr (has_liquid<M>) {
       stop(state_.liquid);
@@ -577,5 +499,107 @@ class Solver {
   detail::Walls<dim> walls_;
   RunMemory memory_;
 };
+
+// What compiles long is not inline: `extern template class` leaves it to one source file.
+
+template <class M, class Scheme>
+Solver<M, Scheme>::Solver(const Scene<M>& scene, const Options& options) {
+  options.validate();
+  scene.validate();
+  state_.transfer = options.transfer;
+  state_.options = {options.courant, options.damping,         options.displacement_cap,
+                    options.dt_max,  options.free_relaxation, options.threads,
+                    options.escaped, options.resampling,      options.saturation_step};
+  detail::assemble(state_, scene);
+  collect_walls(scene);
+  state_.tiles.resize(static_cast<std::size_t>(2 * options.threads));
+  state_.sums.resize(static_cast<std::size_t>(options.threads));
+  sort();
+  remember_start();
+  start_wave_speed();
+  count_initial();
+  if constexpr (requires { Scheme::check(state_); }) Scheme::check(state_);
+}
+
+template <class M, class Scheme>
+StepReport Solver<M, Scheme>::step(Real t_end) {
+  if (state_.slack > 0.25 * state_.grid.cell_size() || state_.solid.has_new() || has_new_liquid()) {
+    if constexpr (has_liquid<M>)
+      if (state_.options.resampling.on && !state_.frozen) detail::resample_water(state_);
+    sort();
+  }
+  switch_conditions();
+  state_.trouble = Trouble{};
+  const kernel::StableStep used = Scheme::step(state_, t_end - state_.time);
+  state_.time += state_.dt;
+  ++state_.step;
+  StepReport report{Status::ok,  state_.time, state_.dt,           used.limit,
+                    state_.step, {},          state_.system.report};
+  Real speed2 = 0;
+  for (const StepSums& s : state_.sums) {
+    if (s.failed) report.status = Status::failed;
+    speed2 = std::max(speed2, s.max_speed2);
+  }
+  report.trouble = state_.trouble;
+  state_.slack += state_.dt * std::sqrt(speed2);
+  detail::handle_escaped(state_);
+  if constexpr (has_liquid<M> && has_skeleton<M>) {
+    detail::gather_films(state_);
+    detail::release_films(state_);
+  }
+  memory_.last = report;
+  return report;
+}
+
+template <class M, class Scheme>
+PointCount Solver<M, Scheme>::add_points(const Scene<M>& more) {
+  more.validate();
+  const std::vector<int> groups = detail::groups_of(state_, more);
+  const Real solid_before = stored_solid(), water_before = stored_water();
+  const std::size_t first = memory_.start.size() / dim;
+  const PointCount added = detail::append_bodies(state_, more, groups, first);
+  sort();
+  memory_.start.resize(memory_.start.size() + added.solid * dim, 0);
+  state_.solid.for_each([&](std::size_t b, int l) {
+    if (state_.solid.at(field::id, b)[l] >= static_cast<Real>(first)) remember_start(b, l);
+  });
+  start_wave_speed();
+  state_.added_solid += stored_solid() - solid_before;
+  state_.added_water += stored_water() - water_before;
+  return added;
+}
+
+template <class M, class Scheme>
+PointCount Solver<M, Scheme>::remove_points(const Region<dim>& region) {
+  const Real solid_before = stored_solid(), water_before = stored_water();
+  PointCount removed;
+  if constexpr (has_skeleton<M>) removed.solid = detail::remove_points(state_.solid, region);
+  if constexpr (has_liquid<M>) removed.liquid = detail::remove_points(state_.liquid, region);
+  std::erase_if(state_.loads, [&](const auto& load) { return region.contains(load.position); });
+  sort();
+  state_.added_solid += stored_solid() - solid_before;
+  state_.added_water += stored_water() - water_before;
+  return removed;
+}
+
+template <class M, class Scheme>
+void Solver<M, Scheme>::sort() {
+  std::vector<char> occupied(state_.grid.block_count(), 0);
+  state_.solid.mark_blocks(state_.grid, occupied);
+  if constexpr (has_liquid<M>) state_.liquid.mark_blocks(state_.grid, occupied);
+  make_blocks(occupied);
+  const int groups = static_cast<int>(state_.soils.size()) + 1;
+  state_.solid.sort(state_.grid, groups);
+  if constexpr (has_liquid<M>) state_.liquid.sort(state_.grid, groups);
+  find_films();
+  state_.slack = 0;
+}
+
+template <class M, class Scheme>
+void Solver<M, Scheme>::make_blocks(const std::vector<char>& occupied) {
+  state_.grid.rebuild(occupied);
+  resize_grid();
+  detail::flag_nodes(state_, walls_);
+}
 
 }  // namespace vadose

@@ -23,7 +23,7 @@ struct ManufacturedTwoPhase {
   static constexpr Real poisson_ratio = 0.3, porosity = 0.4;
   static constexpr Real solid_density = 2650, liquid_density = 1000;
 
-  struct Physics : vadose::UnsaturatedModel<K> {};
+  using Physics = vadose::UnsaturatedModel<K>;
 
   Real start_saturation = 1;  ///< [-]
   /// Soft enough that water and skeleton share the load.

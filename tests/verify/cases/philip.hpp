@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include "../../seepage.hpp"
 #include "../case.hpp"
 
 namespace verify {
@@ -16,9 +17,7 @@ struct Philip {
   std::vector<Real> times = {25, 50, 100};
   std::vector<Resolution> resolutions = {{20}, {40}, {80}};
 
-  struct Physics : vadose::UnsaturatedModel<vadose::Uniaxial> {
-    using Skeleton = vadose::law::Rigid;
-  };
+  using Physics = vadose_test::Seepage<vadose::Uniaxial>;
 
   Real seconds(Real time) const { return time / speed_up; }
 

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <stdexcept>
 
+#include "../../seepage.hpp"
 #include "../case.hpp"
 
 namespace verify {
@@ -23,9 +24,8 @@ struct Pond {
   std::vector<Real> times = {50, 100, 200, end()};
   std::vector<Resolution> resolutions = {{10}, {20}, {40}};
 
-  struct Physics : vadose::UnsaturatedModel<vadose::Uniaxial> {
-    using Skeleton = SkeletonLaw;
-  };
+  using Physics = std::conditional_t<rigid, vadose_test::Seepage<vadose::Uniaxial>,
+                                     vadose::UnsaturatedModel<vadose::Uniaxial>>;
 
   /// What is left of 0.5 m, and the heave, at the end [m].
   static constexpr Real end() { return rigid ? 300 : 500; }

@@ -18,7 +18,7 @@ struct Terzaghi {
   std::vector<Real> times = {0.05, 0.1, 0.3, 0.6};
   std::vector<Resolution> resolutions = {{10}, {20}, {40}};
 
-  struct Physics : vadose::SaturatedModel<vadose::Uniaxial> {};
+  using Physics = vadose::SaturatedModel<vadose::Uniaxial>;
 
   static Real stiffness() {
     return oedometric_modulus(table1::young_modulus, table1::poisson_ratio);

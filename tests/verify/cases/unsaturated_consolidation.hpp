@@ -51,7 +51,7 @@ struct UnsaturatedConsolidation {
   std::vector<Real> times = {0.05, 0.1, 0.3, 0.6};
   std::vector<Resolution> resolutions = {{10}, {20}, {40}};
 
-  struct Physics : vadose::UnsaturatedModel<vadose::Uniaxial> {};
+  using Physics = vadose::UnsaturatedModel<vadose::Uniaxial>;
 
   UnsaturatedClosedForm closed_form() const { return {young_modulus, porosity_dependent}; }
   Real conductivity() const { return speed_up * table1::conductivity; }

@@ -21,30 +21,34 @@ struct Explicit {
 
   /// One step of at most dt_limit [s]; returns the stable step that was used.
   template <class M>
-  static kernel::StableStep step(State<M>& state, Real dt_limit) {
-    if constexpr (has_liquid<M>) {
-      kernel::find_pressures(state);  // (g) of the last step: water in the cells, p, S
-    }
-    kernel::StableStep stable = kernel::stable_step(state);
-    stable.take(dt_limit, StepLimit::user);
-    kernel::begin_step(state, stable.dt);
-    if constexpr (has_liquid<M>) {
-      if constexpr (has_skeleton<M>) kernel::find_faces(state);  // (c) k and S between cells
-      kernel::map_liquid(state);                                 // (a) liquid to nodes
-    }
-    if constexpr (is_deformable<M>) {
-      kernel::map_solid(state);  // (a) solid to nodes
-      kernel::map_loads(state);  //     traction
-    }
-    kernel::advance_nodes(state);  // (b), (d), (e): porosity, forces, drag, walls, velocities
-    if constexpr (has_liquid<M>) kernel::exchange_water(state);  // fluxes and gains of cells
-    if constexpr (is_deformable<M>) {
-      kernel::move_loads(state);
-      kernel::update_solid(state);  // (f), (h): positions, stress, volume
-    }
-    if constexpr (has_liquid<M>) kernel::update_liquid(state);  // (f), (g): positions, water, p
-    return stable;
-  }
+  static kernel::StableStep step(State<M>& state, Real dt_limit);
 };
+
+// Not inline, so that a program can compile it once for a model (see Solver).
+template <class M>
+kernel::StableStep Explicit::step(State<M>& state, Real dt_limit) {
+  if constexpr (has_liquid<M>) {
+    kernel::find_pressures(state);  // (g) of the last step: water in the cells, p, S
+  }
+  kernel::StableStep stable = kernel::stable_step(state);
+  stable.take(dt_limit, StepLimit::user);
+  kernel::begin_step(state, stable.dt);
+  if constexpr (has_liquid<M>) {
+    if constexpr (has_skeleton<M>) kernel::find_faces(state);  // (c) k and S between cells
+    kernel::map_liquid(state);                                 // (a) liquid to nodes
+  }
+  if constexpr (is_deformable<M>) {
+    kernel::map_solid(state);  // (a) solid to nodes
+    kernel::map_loads(state);  //     traction
+  }
+  kernel::advance_nodes(state);  // (b), (d), (e): porosity, forces, drag, walls, velocities
+  if constexpr (has_liquid<M>) kernel::exchange_water(state);  // fluxes and gains of cells
+  if constexpr (is_deformable<M>) {
+    kernel::move_loads(state);
+    kernel::update_solid(state);  // (f), (h): positions, stress, volume
+  }
+  if constexpr (has_liquid<M>) kernel::update_liquid(state);  // (f), (g): positions, water, p
+  return stable;
+}
 
 }  // namespace vadose::scheme
