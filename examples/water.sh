@@ -1,14 +1,13 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT
 # From a fresh clone to the examples of water at the ground: installs what is missing, builds and runs
-# 05 to 09 in out/, prints their ledgers and draws their pictures.
+# 03, 04, 05, 09 and 10 in out/, prints their ledgers and draws their pictures.
 #   sh examples/water.sh
 set -eu
 cd "$(dirname "$0")/.."
 . ./cmake/prepare.sh
 root=$PWD
-programs="05_rain_on_a_column 06_rain_on_a_slope 07_reservoir_drawdown 08_dam_break_on_sand
-          09_ponded_infiltration"
+programs="03_infiltration 04_rain 05_free_water 09_rain_on_a_slope 10_reservoir_drawdown"
 
 require_packages
 offer_pictures

@@ -6,7 +6,7 @@
 // Kinds of conditions are the library's; what one's own code decides is where, when and how much: each
 // takes functions of time, pressures of place too, and `active` switches it. They are called once per
 // step, or per face, so they may ask whatever the host knows. (What has no kind yet, such as
-// evaporation, a host does between steps, see 10_host_coupling.cpp.)
+// evaporation, a host does between steps, see 08_host_coupling.cpp.)
 
 #include <cmath>
 #include <numbers>
