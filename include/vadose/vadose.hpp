@@ -4,10 +4,13 @@
 /// \file
 /// The whole library.
 
+/// Version of the library: major, minor and patch number.
+/// @{
 #define VADOSE_VERSION_MAJOR 0
 #define VADOSE_VERSION_MINOR 1
 #define VADOSE_VERSION_PATCH 0
 
+/// @}
 #include <vadose/core/aligned.hpp>
 #include <vadose/core/compensated_sum.hpp>
 #include <vadose/core/error.hpp>

@@ -11,6 +11,7 @@ namespace vadose {
 /// Kahan's sum: equal small terms are rounded alike, and a million of them would drift by 1e-11.
 class CompensatedSum {
  public:
+  /// Adds a term.
   CompensatedSum& operator+=(Real term) noexcept {
     const Real corrected = term - carry_;
     const Real next = sum_ + corrected;
@@ -18,6 +19,7 @@ class CompensatedSum {
     sum_ = next;
     return *this;
   }
+  /// The sum.
   operator Real() const noexcept { return sum_; }  // NOLINT(google-explicit-constructor)
 
  private:

@@ -16,10 +16,12 @@ struct Id {
   static constexpr const char* name = "id";
   static constexpr const char* unit = "-";
 };
+/// Position of a point.
 struct Position {
   static constexpr const char* name = "position";
   static constexpr const char* unit = "m";
 };
+/// Velocity of a point: of grains or of water.
 struct Velocity {
   static constexpr const char* name = "velocity";
   static constexpr const char* unit = "m/s";
@@ -76,6 +78,7 @@ struct ViscousStress {
   static constexpr const char* unit = "Pa";
 };
 
+// What functions take, as in `at(field::mass, batch)`.
 inline constexpr Id id{};
 inline constexpr Position position{};
 inline constexpr Velocity velocity{};
@@ -95,8 +98,8 @@ inline constexpr ViscousStress viscous_stress{};
 /// A field with its number of components; 0 components: not stored.
 template <class Tag, int Components>
 struct Sized {
-  using tag = Tag;
-  static constexpr int components = Components;
+  using tag = Tag;                               ///< the field
+  static constexpr int components = Components;  ///< per point
 };
 
 /// The fields of a point set, in storage order. A host's own fields ride along with the points of

@@ -52,7 +52,7 @@ typedef long long NativeMask __attribute__((vector_size(8 * native_width)));
 
 /// One truth value per lane.
 struct LaneMask {
-  detail::NativeMask part[detail::native_parts];
+  detail::NativeMask part[detail::native_parts];  ///< all bits set: true
 
   VADOSE_INLINE friend LaneMask operator&(LaneMask a, const LaneMask& b) noexcept {
     for (int i = 0; i < detail::native_parts; ++i) a.part[i] = a.part[i] & b.part[i];
@@ -69,6 +69,7 @@ struct LaneMask {
   VADOSE_INLINE bool operator[](int lane) const noexcept {
     return part[lane / detail::native_width][lane % detail::native_width] != 0;
   }
+  /// True in at least one lane.
   VADOSE_INLINE friend bool any(const LaneMask& mask) noexcept {
     detail::NativeMask joined = mask.part[0];
     for (int i = 1; i < detail::native_parts; ++i) joined = joined | mask.part[i];
@@ -76,15 +77,17 @@ struct LaneMask {
     for (int l = 0; l < detail::native_width; ++l) bits |= joined[l];
     return bits != 0;
   }
+  /// True in all lanes.
   VADOSE_INLINE friend bool all(const LaneMask& mask) noexcept { return !any(!mask); }
 };
 
 /// Eight doubles; arithmetic is lane by lane. Never stored in long-lived data: points are plain
 /// arrays of double, loaded and stored batch by batch.
 struct Lanes {
-  detail::NativeVector part[detail::native_parts];
+  detail::NativeVector part[detail::native_parts];  ///< the numbers, as the machine has them
 
   Lanes() = default;
+  /// The same number in all lanes.
   VADOSE_INLINE Lanes(double s) noexcept {  // NOLINT(google-explicit-constructor): acts as a number
     for (int i = 0; i < detail::native_parts; ++i) part[i] = s - detail::NativeVector{};
   }
@@ -105,6 +108,7 @@ struct Lanes {
   VADOSE_INLINE double operator[](int lane) const noexcept {
     return part[lane / detail::native_width][lane % detail::native_width];
   }
+  /// Changes one lane.
   VADOSE_INLINE void set(int lane, double value) noexcept {
     part[lane / detail::native_width][lane % detail::native_width] = value;
   }
@@ -155,18 +159,23 @@ struct Lanes {
     return r;
   }
 
+  /// mask ? a : b.
   VADOSE_INLINE friend Lanes select(const LaneMask& mask, const Lanes& a, const Lanes& b) noexcept {
     Lanes r;
     for (int i = 0; i < detail::native_parts; ++i) r.part[i] = mask.part[i] ? a.part[i] : b.part[i];
     return r;
   }
+  /// The smaller one.
   VADOSE_INLINE friend Lanes min(const Lanes& a, const Lanes& b) noexcept {
     return select(b < a, b, a);
   }
+  /// The larger one.
   VADOSE_INLINE friend Lanes max(const Lanes& a, const Lanes& b) noexcept {
     return select(a < b, b, a);
   }
+  /// Absolute value.
   VADOSE_INLINE friend Lanes abs(const Lanes& a) noexcept { return select(a < Lanes(0.0), -a, a); }
+  /// Square root.
   VADOSE_INLINE friend Lanes sqrt(Lanes a) noexcept {
 #if defined(__AVX512F__)
     a.part[0] = static_cast<detail::NativeVector>(
@@ -188,16 +197,19 @@ struct Lanes {
     return r;
   }
 
+  /// Sum over the lanes, from the first to the last.
   VADOSE_INLINE friend double sum(const Lanes& a) noexcept {
     double s = 0;
     for (int l = 0; l < lane_count; ++l) s += a[l];
     return s;
   }
+  /// Largest lane.
   VADOSE_INLINE friend double max_lane(const Lanes& a) noexcept {
     double m = a[0];
     for (int l = 1; l < lane_count; ++l) m = a[l] > m ? a[l] : m;
     return m;
   }
+  /// Smallest lane.
   VADOSE_INLINE friend double min_lane(const Lanes& a) noexcept {
     double m = a[0];
     for (int l = 1; l < lane_count; ++l) m = a[l] < m ? a[l] : m;
@@ -215,9 +227,11 @@ using std::sqrt;
 VADOSE_INLINE double select(bool mask, double a, double b) noexcept {
   return mask ? a : b;
 }
+/// mask itself: any lane of one.
 VADOSE_INLINE bool any(bool mask) noexcept {
   return mask;
 }
+/// mask itself: all lanes of one.
 VADOSE_INLINE bool all(bool mask) noexcept {
   return mask;
 }

@@ -20,8 +20,8 @@ class MonotoneTable {
  public:
   /// Value and derivative of the interpolant.
   struct Point {
-    Real value;
-    Real slope;
+    Real value;  ///< interpolated y
+    Real slope;  ///< dy/dx
   };
 
   MonotoneTable() = default;
@@ -34,10 +34,10 @@ class MonotoneTable {
     set_slopes();
   }
 
-  bool empty() const noexcept { return x_.empty(); }
-  std::size_t size() const noexcept { return x_.size(); }
-  Real front() const noexcept { return x_.front(); }
-  Real back() const noexcept { return x_.back(); }
+  bool empty() const noexcept { return x_.empty(); }       ///< no entries
+  std::size_t size() const noexcept { return x_.size(); }  ///< number of entries
+  Real front() const noexcept { return x_.front(); }       ///< first x
+  Real back() const noexcept { return x_.back(); }         ///< last x
 
   /// Interpolant at x.
   Point at(Real x) const noexcept {

@@ -32,11 +32,16 @@ class SparseRows {
     }
     value_.assign(column_.size(), 0);
   }
-  int rows() const noexcept { return static_cast<int>(diagonal_.size()); }
+  int rows() const noexcept { return static_cast<int>(diagonal_.size()); }  ///< number of rows
+  /// Number of the first entry of a row, and of the one behind its last.
   int begin(int row) const noexcept { return start_[static_cast<std::size_t>(row)]; }
+  /// See begin().
   int end(int row) const noexcept { return start_[static_cast<std::size_t>(row) + 1]; }
+  /// Number of the entry on the diagonal.
   int diagonal(int row) const noexcept { return diagonal_[static_cast<std::size_t>(row)]; }
+  /// Column of an entry.
   int column(int at) const noexcept { return column_[static_cast<std::size_t>(at)]; }
+  /// Value of an entry.
   Real value(int at) const noexcept { return value_[static_cast<std::size_t>(at)]; }
   /// Sets a row to zero.
   void clear(int row) noexcept {
@@ -62,6 +67,7 @@ class IncompleteLu {
  public:
   static constexpr int chunk = 2048;  ///< rows factored together
 
+  /// Number of chunks.
   static std::size_t chunks(int rows) noexcept {
     return static_cast<std::size_t>((rows + chunk - 1) / chunk);
   }
@@ -134,8 +140,8 @@ class SparseSolver {
  public:
   /// What a solution took.
   struct Outcome {
-    int iterations = 0;
-    Real residual = 0;  ///< |b - A x| / |b| as the iteration has it [-]; NaN: it broke down
+    int iterations = 0;  ///< taken
+    Real residual = 0;   ///< |b - A x| / |b| as the iteration has it [-]; NaN: it broke down
   };
 
   /// x = A^-1 b to |b - A x| <= tolerance |b|.

@@ -15,9 +15,9 @@ namespace vadose {
 template <class T, int N>
 struct SymTensor {
   static_assert(N == 3 || N == 4 || N == 6, "SymTensor: N must be 3, 4 or 6");
-  static constexpr int size = N;
+  static constexpr int size = N;  ///< stored components
 
-  T component[N] = {};
+  T component[N] = {};  ///< in the order above
 
   VADOSE_INLINE T& operator[](int i) noexcept { return component[i]; }
   VADOSE_INLINE const T& operator[](int i) const noexcept { return component[i]; }

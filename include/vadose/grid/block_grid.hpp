@@ -19,17 +19,17 @@ namespace vadose {
 template <int Dim>
 struct Block {
   static constexpr int edge = Dim == 1 ? 64 : Dim == 2 ? 8 : 4;  ///< cells per axis
-  static constexpr int cells = 64;
+  static constexpr int cells = 64;                               ///< in a block
   /// A tile reaches one node below the block and two above: enough for every basis while points
   /// stay within half a cell of the block they were sorted into.
   static constexpr int tile_edge = edge + 3;
-  static constexpr int tile_size = power<Dim>(tile_edge);
+  static constexpr int tile_size = power<Dim>(tile_edge);  ///< nodes of a tile
 };
 
 /// Cell or node coordinates.
 template <int Dim>
 struct Index {
-  int at[Dim] = {};
+  int at[Dim] = {};  ///< per axis
   constexpr int& operator[](int d) noexcept { return at[d]; }
   constexpr int operator[](int d) const noexcept { return at[d]; }
 };
@@ -55,7 +55,7 @@ constexpr void for_cube(int low, int high, F&& f) {
 template <int Dim>
 class BlockGrid {
  public:
-  using B = Block<Dim>;
+  using B = Block<Dim>;  ///< sizes
 
   BlockGrid() = default;
 

@@ -29,9 +29,9 @@ struct BatchRange {
 template <int Dim, class Fields>
 class PointSet {
  public:
-  using fields = Fields;
+  using fields = Fields;                                     ///< what a point carries
   static constexpr int stride = Fields::total * lane_count;  ///< doubles per batch
-  static constexpr int bytes_per_point = Fields::total * 8;
+  static constexpr int bytes_per_point = Fields::total * 8;  ///< of all fields
 
   std::size_t batches() const noexcept { return group_.size(); }         ///< number of batches
   std::size_t size() const noexcept { return size_; }                    ///< points that exist
@@ -49,19 +49,23 @@ class PointSet {
     return data_.data() + batch * stride +
            static_cast<std::size_t>(Fields::template offset<Tag>() + component) * lane_count;
   }
+  /// The same, to read.
   template <class Tag>
   const double* at(Tag, std::size_t batch, int component = 0) const noexcept {
     return data_.data() + batch * stride +
            static_cast<std::size_t>(Fields::template offset<Tag>() + component) * lane_count;
   }
+  /// The same as lanes.
   template <class Tag>
   VADOSE_INLINE Lanes load(Tag tag, std::size_t batch, int component = 0) const noexcept {
     return Lanes::load(at(tag, batch, component));
   }
+  /// Writes the eight values of a component of a field.
   template <class Tag>
   VADOSE_INLINE void store(Tag tag, std::size_t batch, int component, const Lanes& v) noexcept {
     v.store(at(tag, batch, component));
   }
+  /// Writes the eight values of a field of one component.
   template <class Tag>
   VADOSE_INLINE void store(Tag tag, std::size_t batch, const Lanes& v) noexcept {
     v.store(at(tag, batch, 0));
@@ -119,8 +123,9 @@ class PointSet {
   };
   /// The values of all batches and of the waiting points, and the groups of both.
   const AlignedVector<double>& values() const noexcept { return data_; }
-  const std::vector<std::uint8_t>& groups() const noexcept { return group_; }
-  const std::vector<double>& new_values() const noexcept { return new_values_; }
+  const std::vector<std::uint8_t>& groups() const noexcept { return group_; }     ///< see values()
+  const std::vector<double>& new_values() const noexcept { return new_values_; }  ///< see values()
+  /// See values().
   const std::vector<std::uint8_t>& new_groups() const noexcept { return new_groups_; }
 
   /// Puts a stored set back; the grid must have the blocks it was stored with.

@@ -224,6 +224,7 @@ Region<Dim> box(const Vec<Dim>& low, const Vec<Dim>& high) {
   check::proper_box("box", bounds);
   return {[](const Vec<Dim>&) { return true; }, bounds};
 }
+/// The same from lists of numbers: box({0.0, 0.0}, {1.0, 2.0}).
 template <int Dim>
 Region<Dim> box(const Real (&low)[Dim], const Real (&high)[Dim]) {
   return box<Dim>(detail::to_vec(low), detail::to_vec(high));
@@ -251,6 +252,7 @@ Region<Dim> half_space(const Vec<Dim>& point, const Vec<Dim>& normal) {
   return {[point, normal](const Vec<Dim>& x) { return (x - point).dot(normal) <= 0; },
           Box<Dim>::everywhere()};
 }
+/// The same from lists of numbers.
 template <int Dim>
 Region<Dim> half_space(const Real (&point)[Dim], const Real (&normal)[Dim]) {
   return half_space<Dim>(detail::to_vec(point), detail::to_vec(normal));

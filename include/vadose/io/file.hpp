@@ -52,8 +52,10 @@ class File {
     file_ = std::fopen(path_.c_str(), append ? "ab" : "wb");
     if (!file_) fail("open");
   }
+  /// Takes the open file of another.
   File(File&& other) noexcept
       : path_(std::move(other.path_)), file_(std::exchange(other.file_, nullptr)) {}
+  /// Exchanges the open files.
   File& operator=(File&& other) noexcept {
     std::swap(path_, other.path_);
     std::swap(file_, other.file_);
@@ -64,7 +66,7 @@ class File {
   }
 
   const std::string& path() const noexcept { return path_; }
-  bool is_open() const noexcept { return file_ != nullptr; }
+  bool is_open() const noexcept { return file_ != nullptr; }  ///< until close()
 
   /// Writes `bytes` bytes.
   void write(const void* data, std::size_t bytes) {
@@ -73,6 +75,7 @@ class File {
     errno = 0;
     if (std::fwrite(data, 1, bytes, file_) != bytes) fail("write");
   }
+  /// Writes text.
   void write(std::string_view text) { write(text.data(), text.size()); }
 
   /// Writes formatted text, as printf does.
@@ -127,6 +130,7 @@ class File {
 /// or the new content, never a part of it.
 class ReplacingFile {
  public:
+  /// Opens the file beside `path`.
   explicit ReplacingFile(std::string path) : path_(std::move(path)), file_(path_ + ".part") {}
   ReplacingFile(const ReplacingFile&) = delete;
   ReplacingFile& operator=(const ReplacingFile&) = delete;
@@ -136,6 +140,7 @@ class ReplacingFile {
     std::filesystem::remove(file_.path(), ignored);
   }
 
+  /// The new content.
   File& file() noexcept { return file_; }
 
   /// Closes the new content and puts it at `path`. Durable: on the disk before it takes its place.

@@ -306,6 +306,7 @@ class Gauges {
   void position(const std::string& name, const Vec<Dim>& x, std::vector<Measure> measures) {
     add({name, coordinates(x), Dim, false, -1, std::move(measures)});
   }
+  /// The same with a list of numbers.
   template <int Dim>
   void position(const std::string& name, const Real (&x)[Dim], std::vector<Measure> measures) {
     position(name, vec(x), std::move(measures));
@@ -316,6 +317,7 @@ class Gauges {
   void point(const std::string& name, const Vec<Dim>& x, std::vector<Measure> measures) {
     add({name, coordinates(x), Dim, true, -1, std::move(measures)});
   }
+  /// The same with a list of numbers.
   template <int Dim>
   void point(const std::string& name, const Real (&x)[Dim], std::vector<Measure> measures) {
     point(name, vec(x), std::move(measures));
@@ -335,6 +337,7 @@ class Gauges {
     });
     lines_.push_back({name, coordinates(from), coordinates(to), Dim, count, std::move(measures)});
   }
+  /// The same with lists of numbers.
   template <int Dim>
   void line(const std::string& name, const Real (&from)[Dim], const Real (&to)[Dim], int count,
             std::vector<Measure> measures) {

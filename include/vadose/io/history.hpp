@@ -35,6 +35,7 @@ class History {
     file_.write(head + "\n");
     file_.flush();
   }
+  /// The same with a list in braces.
   History(const std::string& path, std::initializer_list<Quantity> columns)
       : History(path, std::span<const Quantity>(columns.begin(), columns.size())) {}
 
@@ -54,6 +55,7 @@ class History {
     file_.write(row + "\n");
     file_.flush();
   }
+  /// The same with a list in braces.
   void add(std::initializer_list<Real> values) {
     add(std::span<const Real>(values.begin(), values.size()));
   }

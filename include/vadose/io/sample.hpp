@@ -18,9 +18,9 @@ namespace vadose::io {
 
 /// Where a point is stored at the moment. Valid until the next step.
 struct PointPlace {
-  std::int64_t id = -1;
-  std::size_t batch = 0;
-  int lane = 0;
+  std::int64_t id = -1;   ///< number of the point; -1: none
+  std::size_t batch = 0;  ///< where it is
+  int lane = 0;           ///< and which of eight
 };
 
 /// Places of all points, ordered by id: files of different runs and times are comparable.
@@ -64,6 +64,7 @@ std::optional<PointPlace> nearest_of_all(const Points& points, const Vec<Dim>& x
 template <int Dim, class Points>
 class NearbyPoints {
  public:
+  /// For one state of a run: not valid after its next step.
   NearbyPoints(const BlockGrid<Dim>& grid, const Points& points)
       : grid_(grid), points_(points), first_(grid.size(), -1), places_(places_by_id(points)) {
     next_.reserve(places_.size());

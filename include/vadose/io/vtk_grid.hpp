@@ -17,11 +17,11 @@ namespace vadose::io {
 
 /// A part of a regular grid: cells [low, high) along each axis; 0 and 1 along axes that are not.
 struct GridPart {
-  std::array<Real, 3> origin{};  ///< lower corner of cell (0, 0, 0) [m]
-  Real cell_size = 1;            ///< [m]
-  std::array<int, 3> low{};
-  std::array<int, 3> high{1, 1, 1};
-  int dim = 3;  ///< along the others the grid has no extent
+  std::array<Real, 3> origin{};      ///< lower corner of cell (0, 0, 0) [m]
+  Real cell_size = 1;                ///< [m]
+  std::array<int, 3> low{};          ///< first cell
+  std::array<int, 3> high{1, 1, 1};  ///< behind the last
+  int dim = 3;                       ///< along the others the grid has no extent
 
   /// Number of cells, or of nodes.
   std::size_t count(bool nodes) const noexcept {

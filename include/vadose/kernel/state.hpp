@@ -66,7 +66,9 @@ struct SurfaceLoad {
 /// A node whose solid motion is prescribed or limited by friction.
 template <int Dim>
 struct SpecialNode {
+  /// Of the node in the arrays of the grid.
   std::int32_t entry = -1;
+  /// Motion along the axis is given.
   bool prescribed[Dim] = {};
   Real velocity[Dim] = {};  ///< at factor 1 [m/s]
   std::size_t factor = 0;   ///< which time factor
@@ -88,7 +90,9 @@ enum class HeldKind : std::uint8_t {
 template <int Dim>
 struct HeldPressure {
   int face_axis = -1;  ///< wall normal; -1: the ground surface
+  /// 0: lower, 1: upper wall.
   int face_side = 0;
+  /// Which way water goes.
   HeldKind kind = HeldKind::open;
   bool limited = false;                                 ///< to a region
   bool acts = true;                                     ///< at the present time
@@ -155,7 +159,9 @@ struct StepOptions {
   Real dt_max = 1e30;           ///< largest step [s]
   Real free_relaxation = 10;    ///< rate at which free points of a cell share its pressure [1/s]
   int threads = 1;              ///< used where the host links OpenMP
+  /// Points that leave the box.
   Escape escaped = Escape::error;
+  /// Of free water.
   Resampling resampling = {};
   Real saturation_step = 0.002;  ///< change of S that a semi-implicit step aims at [-]
 };
@@ -165,6 +171,7 @@ struct alignas(64) StepSums {
   Real max_speed2 = 0;  ///< [m2/s2]
   Real max_wave2 = 0;   ///< largest dry p-wave speed squared [m2/s2]
   Real max_drag = 0;    ///< fastest decay of a relative velocity by explicit drag [1/s]
+  /// A point is in an impossible state.
   bool failed = false;
   bool escaped = false;  ///< a point left the box
 };
@@ -173,30 +180,46 @@ struct alignas(64) StepSums {
 struct Trouble {
   const char* criterion = nullptr;  ///< nullptr: nothing
   const char* phase = "";           ///< "solid", "liquid"
+  /// Of what the criterion looks at.
   Real value = 0;
+  /// Of the point; -1: none.
   std::int64_t id = -1;
+  /// [m].
   std::array<Real, 3> position{};
 };
 
 /// State of a run of model M.
 template <class M>
 struct State {
+  /// Of the model.
   using Kinematics = typename M::Kinematics;
   static constexpr int dim = Kinematics::dim;
   static constexpr int stress_size = Kinematics::stress_size;
+  /// Set of solid points.
   using Solid = PointSet<dim, SolidFields<M>>;
+  /// Set of liquid points.
   using Liquid = PointSet<dim, LiquidFields<M>>;
 
+  /// Cells and blocks that exist.
   BlockGrid<dim> grid;
+  /// What cells, faces and nodes hold.
   GridState<dim> nodes;
   PressureSystem<dim> system;  ///< of a semi-implicit run
+  /// Grains.
   Solid solid;
+  /// Pore water and free water.
   Liquid liquid;
+  /// Groups of points.
   std::vector<Soil<M>> soils;
+  /// Viscous law of free water.
   [[no_unique_address]] std::conditional_t<has_liquid<M>, typename M::Liquid, NoLiquid> fluid;
+  /// Velocities to points.
   typename M::Transfer transfer;
+  /// Density, compressibility.
   LiquidNumbers water;
+  /// [m/s2].
   Vec<dim> gravity = Vec<dim>::Zero();
+  /// Of the run.
   StepOptions options;
 
   Real time = 0;           ///< [s]
@@ -211,10 +234,12 @@ struct State {
   /// noise of its points; at the fringe of the skeleton. Momentum of a closed system closes with it.
   Vec<dim> open_impulse = Vec<dim>::Zero();
 
+  /// Follow the ground.
   std::vector<SurfaceLoad<dim>> loads;
   std::vector<std::function<Real(Real)>> factors;  ///< of time [s]; empty: 1
   std::vector<Real> factor_values;                 ///< the same at the present time [-]
   std::vector<SpecialNode<dim>> special;           ///< in ascending order of entry
+  /// Conditions of the liquid, in their order.
   std::vector<HeldPressure<dim>> held;
   bool films = false;                    ///< rain or free water: there may be films on the ground
   std::vector<RainColumn<dim>> columns;  ///< empty without films
@@ -228,6 +253,7 @@ struct State {
 
   AlignedVector<kernel::Tile<dim>> tiles;  ///< two per thread
   std::vector<StepSums> sums;              ///< one per thread
+  /// Of the last step.
   Trouble trouble;
 
   /// Group of free water among liquid points.

@@ -56,9 +56,10 @@ inline Real seepage_frequency2(Real effective_modulus, Real liquid_density,
 
 /// A stable step and its reason.
 struct StableStep {
-  Real dt = 1e30;  ///< [s]
-  StepLimit limit = StepLimit::none;
+  Real dt = 1e30;                     ///< [s]
+  StepLimit limit = StepLimit::none;  ///< why not more
 
+  /// Takes another step if it is shorter.
   void take(Real other, StepLimit reason) noexcept {
     if (other < dt) {
       dt = other;

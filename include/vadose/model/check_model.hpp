@@ -181,7 +181,7 @@ template <class M>
 struct CheckModel
     : CheckAliases<M>,
       detail::CheckParts<M, requirement::NamesAll<M> && requirement::NoWrongKinematics<M>> {
-  static constexpr bool ok = true;
+  static constexpr bool ok = true;  ///< nothing is wrong with M
 };
 
 }  // namespace vadose

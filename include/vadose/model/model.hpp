@@ -51,21 +51,21 @@ struct DryModel {
 /// Soil whose pores are full, and free water.
 template <class K>
 struct SaturatedModel : DryModel<K> {
-  using Liquid = law::InviscidWater;
-  using Conductivity = conductivity::KozenyCarman;
+  using Liquid = law::InviscidWater;                ///< water without shear stress
+  using Conductivity = conductivity::KozenyCarman;  ///< by porosity
 };
 
 /// Soil whose pores are partly filled, and free water: [Zhan] Eqs. (12) to (16).
 template <class K>
 struct UnsaturatedModel : SaturatedModel<K> {
-  using Retention = swrc::Tarantino;
-  using Conductivity = conductivity::Mualem;
+  using Retention = swrc::Tarantino;          ///< [Zhan] Eq. (12)
+  using Conductivity = conductivity::Mualem;  ///< [Zhan] Eqs. (13) to (16)
 };
 
 /// Free water only.
 template <class K>
 struct FreeWaterModel : SaturatedModel<K> {
-  using Skeleton = NoSkeleton;
+  using Skeleton = NoSkeleton;  ///< no soil
 };
 
 /// M has soil.
@@ -89,13 +89,14 @@ inline constexpr bool is_rigid = law::RigidLaw<typename M::Skeleton>;
 /// matching preset: KozenyCarman for AlwaysSaturated, else Mualem.
 template <class K, class S, class Law, class R, class D>
 struct PositionalModel : UnsaturatedModel<K> {
-  using Shape = S;
-  using Skeleton = Law;
-  using Retention = R;
+  using Shape = S;       ///< second parameter
+  using Skeleton = Law;  ///< third
+  using Retention = R;   ///< fourth
+  /// By the retention curve.
   using Conductivity = std::conditional_t<std::is_same_v<R, swrc::AlwaysSaturated>,
                                           typename SaturatedModel<K>::Conductivity,
                                           typename UnsaturatedModel<K>::Conductivity>;
-  using Drag = D;
+  using Drag = D;  ///< last
 };
 
 }  // namespace vadose

@@ -120,6 +120,7 @@ concept QuadraticDrag = DragLaw<D> && requires(const D& law, Real x) {
 /// The curve declares `static constexpr bool always_saturated = true`.
 template <class R>
 inline constexpr bool is_always_saturated = false;
+/// The same where the curve says it.
 template <class R>
 requires requires {
   R::always_saturated;
@@ -174,8 +175,8 @@ namespace swrc {
 /// Degree of saturation [-] and dS/ds [1/Pa].
 template <class T>
 struct SaturationAndSlope {
-  T saturation;
-  T slope;
+  T saturation;  ///< S [-]
+  T slope;       ///< dS/ds [1/Pa]
 };
 
 /// Degree of saturation [-] at suction >= 0 [Pa] and porosity [-].
@@ -280,8 +281,8 @@ Real suction(const Curve& curve, Real target, Real porosity) {
 /// Volumetric water content at reference density [-] and its derivative to pressure [1/Pa].
 template <class T>
 struct WaterContent {
-  T value;
-  T slope;
+  T value;  ///< theta [-]
+  T slope;  ///< d(theta)/dp [1/Pa]
 };
 
 /// theta = n S(max(0, -p), n) exp(p/K) and d theta/dp = n (S/K + S_p) exp(p/K), S_p = -dS/ds for

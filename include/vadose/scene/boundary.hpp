@@ -56,6 +56,7 @@ constexpr const char* name(Face face) noexcept {
 class AnyRegion {
  public:
   AnyRegion() = default;
+  /// A region is one of any dimension.
   template <int Dim>
   AnyRegion(Region<Dim> region)  // NOLINT(google-explicit-constructor): a region is a region
       : region_(std::move(region)) {}

@@ -176,10 +176,10 @@ struct SoilOptions {
   Real suction = unset;      ///< uniform suction [Pa], >= 0
   Real saturation = unset;   ///< uniform degree of saturation [-], in (S_res, 1]
   Real water_table = unset;  ///< height of p = 0 above the origin, against gravity [m]
-  PressureFunction<Dim> liquid_pressure = {};  ///< p(x) [Pa], compression +
-  bool dry = false;                            ///< no water at all at the start
-  Vec<Dim> velocity = Vec<Dim>::Zero();        ///< of skeleton and pore water [m/s]
-  InitialStress initial_stress = InitialStress::none;
+  PressureFunction<Dim> liquid_pressure = {};          ///< p(x) [Pa], compression +
+  bool dry = false;                                    ///< no water at all at the start
+  Vec<Dim> velocity = Vec<Dim>::Zero();                ///< of skeleton and pore water [m/s]
+  InitialStress initial_stress = InitialStress::none;  ///< at the start
   /// K_0 = horizontal / vertical Bishop stress of a geostatic start [-], in [0, 10]; by default
   /// nu / (1 - nu), that of an elastic skeleton without lateral strain.
   Real lateral_stress_ratio = unset;
@@ -250,6 +250,7 @@ class InitialState {
   static constexpr int dim = M::Kinematics::dim;
   static constexpr int stress_size = M::Kinematics::stress_size;
 
+  /// Start values of a scene.
   explicit InitialState(const Scene<M>& scene) : scene_(&scene) {
     for (const auto& soil : scene.soils()) {
       materials_.push_back(scene.material(soil.material));

@@ -165,13 +165,15 @@ class Scene {
 
   /// The domain [m], its cell size [m] and its number of cells along each axis.
   const Box<dim>& box() const noexcept { return box_; }
-  Real cell_size() const noexcept { return cell_size_; }
-  const std::array<int, dim>& cells() const noexcept { return cells_; }
+  Real cell_size() const noexcept { return cell_size_; }                 ///< see box()
+  const std::array<int, dim>& cells() const noexcept { return cells_; }  ///< see box()
 
   /// What was added, in that order.
   const std::vector<SoilBody<dim>>& soils() const noexcept { return soils_; }
-  const std::vector<WaterBody<dim>>& waters() const noexcept { return waters_; }
-  const std::vector<Material<M>>& materials() const noexcept { return materials_; }
+  const std::vector<WaterBody<dim>>& waters() const noexcept { return waters_; }  ///< see soils()
+  const std::vector<Material<M>>& materials() const noexcept {
+    return materials_;
+  }  ///< see soils()
 
   /// A material whose policies have taken the shared numbers (unit weight, lambda, porosity).
   Material<M> material(int index) const {
@@ -193,6 +195,7 @@ class Scene {
   std::vector<SeedPoint<dim>> seed_soil(int soil) const {
     return seed_body(soils_[static_cast<std::size_t>(soil)]);
   }
+  /// The same of a body of water.
   std::vector<SeedPoint<dim>> seed_water(int water) const {
     return seed_body(waters_[static_cast<std::size_t>(water)]);
   }

@@ -13,7 +13,8 @@ namespace vadose {
 
 /// Numbers of points.
 struct PointCount {
-  std::size_t solid = 0, liquid = 0;
+  std::size_t solid = 0;   ///< solid points
+  std::size_t liquid = 0;  ///< liquid points
 };
 
 namespace detail {

@@ -15,13 +15,13 @@ namespace vadose {
 
 /// Outcome of one step.
 struct StepReport {
-  Status status = Status::ok;
-  Real time = 0;  ///< after the step [s]
-  Real dt = 0;    ///< step taken [s]
-  StepLimit limit = StepLimit::none;
-  std::int64_t step = 0;  ///< number of the step
-  Trouble trouble;        ///< where status is not ok
-  SolveReport solve;      ///< of the pressures, in a semi-implicit step
+  Status status = Status::ok;         ///< ok, or failed
+  Real time = 0;                      ///< after the step [s]
+  Real dt = 0;                        ///< step taken [s]
+  StepLimit limit = StepLimit::none;  ///< what limited the step
+  std::int64_t step = 0;              ///< number of the step
+  Trouble trouble;                    ///< where status is not ok
+  SolveReport solve;                  ///< of the pressures, in a semi-implicit step
 
   /// One line for people.
   std::string text() const {
@@ -50,8 +50,10 @@ struct StepReport {
 /// for inspection only.
 class InstabilityError : public std::runtime_error {
  public:
+  /// Of the step that failed.
   explicit InstabilityError(const StepReport& report)
       : std::runtime_error(report.text()), report_(report) {}
+  /// Report of that step.
   const StepReport& report() const noexcept { return report_; }
 
  private:
@@ -84,10 +86,11 @@ struct WaterBalance {
 
 /// Grains of a run [kg].
 struct SolidBalance {
-  Real initial = 0;
-  Real stored = 0;
-  Real lost = 0;
-  Real added = 0;  ///< put in less taken out by the host between steps
+  Real initial = 0;  ///< at the start
+  Real stored = 0;   ///< now
+  Real lost = 0;     ///< left with points that left the box
+  Real added = 0;    ///< put in less taken out by the host between steps
+  /// Stored now less what must be there [kg].
   Real closure() const noexcept { return stored - (initial + added - lost); }
   /// Closure over the larger of what was and what is there [-].
   Real relative_closure() const noexcept {

@@ -66,21 +66,22 @@ struct EquilibriumOptions {
 
 /// What equilibrate() did.
 struct EquilibriumReport {
-  bool converged = false;
-  Real residual = 0;  ///< out-of-balance force over weight at the end [-]
-  Real time = 0;      ///< model time spent [s]
-  std::int64_t steps = 0;
+  bool converged = false;  ///< the residual fell below the tolerance
+  Real residual = 0;       ///< out-of-balance force over weight at the end [-]
+  Real time = 0;           ///< model time spent [s]
+  std::int64_t steps = 0;  ///< taken
 };
 
 /// What a run will cost.
 struct Estimate {
-  std::size_t solid_points = 0, liquid_points = 0;
-  std::size_t blocks = 0;  ///< blocks of 64 cells that exist
-  Real dt = 0;             ///< mean step at the end of the trial [s]
-  StepLimit limit = StepLimit::none;
-  std::int64_t steps = 0;  ///< to the end time
-  Real seconds = 0;        ///< wall time of these, without output
-  Real megabytes = 0;      ///< of points and grid
+  std::size_t solid_points = 0;       ///< at the start
+  std::size_t liquid_points = 0;      ///< at the start
+  std::size_t blocks = 0;             ///< blocks of 64 cells that exist
+  Real dt = 0;                        ///< mean step at the end of the trial [s]
+  StepLimit limit = StepLimit::none;  ///< what limits it
+  std::int64_t steps = 0;             ///< to the end time
+  Real seconds = 0;                   ///< wall time of these, without output
+  Real megabytes = 0;                 ///< of points and grid
 
   /// A few lines for people.
   std::string text() const {
@@ -114,8 +115,9 @@ class Solver {
 
  public:
   static constexpr int dim = M::Kinematics::dim;
-  using Options = SolverOptions<M>;
+  using Options = SolverOptions<M>;  ///< choices of a run
 
+  /// A run of a scene, which may go when this returns.
   explicit Solver(const Scene<M>& scene, const Options& options = {});
 
   Real time() const noexcept { return state_.time; }             ///< [s]

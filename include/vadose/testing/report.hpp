@@ -25,9 +25,10 @@ struct Failure {
 /// What a check of a policy found. It keeps the worst failure of each check and counts the rest.
 class Report {
  public:
-  bool ok() const noexcept { return failures_.empty(); }
+  bool ok() const noexcept { return failures_.empty(); }  ///< no check failed
+  /// One per check that failed.
   const std::vector<Failure>& failures() const noexcept { return failures_; }
-  std::size_t comparisons() const noexcept { return comparisons_; }
+  std::size_t comparisons() const noexcept { return comparisons_; }  ///< numbers compared
 
   /// Whether a check of this name failed.
   bool failed(const std::string& check) const {

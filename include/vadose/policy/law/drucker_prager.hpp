@@ -86,7 +86,7 @@ VADOSE_INLINE MeanShear<T> return_to_cone(const MeanShear<T>& trial, const ConeN
 /// Backward Euler, closed form: cone, else both surfaces at once (their corner; the apex is the
 /// corner at k_phi/q_phi). With mobilisation the strength is that at the end of the step.
 struct DruckerPrager {
-  LinearElastic elastic;
+  LinearElastic elastic;                   ///< below the strength
   Real cohesion = 0;                       ///< c [Pa], >= 0; the peak value with mobilisation
   Real friction_angle = unset;             ///< phi [rad], in [0, pi/2)
   Real dilation_angle = 0;                 ///< psi [rad], in (-pi/2, phi]; negative contracts
@@ -94,17 +94,20 @@ struct DruckerPrager {
   Cone cone = Cone::plane_strain_matched;  ///< matching to Mohr-Coulomb
   Mobilisation mobilisation = {};          ///< hardening and softening; off by default
 
+  /// Internal variables.
   template <class T>
   struct State {
     T plastic_shear_strain{0.0};  ///< accumulated, in mobilisation.measure [-]
   };
 
+  /// State variables that files show.
   static constexpr std::array<StateOutput, 1> outputs() noexcept {
     return {{{"plastic_shear_strain", "-", 0}}};
   }
 
   /// Numbers derived once; its update is that of the law.
   class Prepared;
+  /// See Prepared.
   Prepared prepared() const noexcept;
 
   /// Oedometric modulus [Pa], the elastic one.
@@ -129,9 +132,11 @@ struct DruckerPrager {
 /// DruckerPrager with its numbers derived.
 class DruckerPrager::Prepared {
  public:
+  /// That of the law.
   template <class T>
   using State = DruckerPrager::State<T>;
 
+  /// Derives the numbers.
   explicit Prepared(const DruckerPrager& law) noexcept
       : bulk_modulus_(law.elastic.bulk_modulus()),
         shear_modulus_(law.elastic.shear_modulus()),

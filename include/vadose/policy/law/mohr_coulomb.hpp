@@ -101,23 +101,26 @@ struct PyramidReturn {
 /// the cut-off at c cot(phi).
 /// DEVIATION: the cut-off bounds the mean stress, as in DruckerPrager, not the major stress.
 struct MohrCoulomb {
-  LinearElastic elastic;
+  LinearElastic elastic;               ///< below the strength
   Real cohesion = 0;                   ///< c [Pa], >= 0
   Real friction_angle = unset;         ///< phi [rad], in [0, pi/2)
   Real dilation_angle = 0;             ///< psi [rad], in (-pi/2, phi]
   Real tensile_strength = no_cut_off;  ///< largest mean stress [Pa], >= 0
 
+  /// Internal variables.
   template <class T>
   struct State {
     T plastic_shear_strain{0.0};  ///< accumulated int sqrt(2 de:de), de deviatoric plastic [-]
   };
 
+  /// State variables that files show.
   static constexpr std::array<StateOutput, 1> outputs() noexcept {
     return {{{"plastic_shear_strain", "-", 0}}};
   }
 
   /// Numbers derived once; its update is that of the law.
   class Prepared;
+  /// See Prepared.
   Prepared prepared() const noexcept;
 
   /// Oedometric modulus [Pa], the elastic one.
@@ -147,9 +150,11 @@ struct MohrCoulomb {
 /// MohrCoulomb with its numbers derived.
 class MohrCoulomb::Prepared {
  public:
+  /// That of the law.
   template <class T>
   using State = MohrCoulomb::State<T>;
 
+  /// Derives the numbers.
   explicit Prepared(const MohrCoulomb& law) noexcept
       : bulk_modulus_(law.elastic.bulk_modulus()),
         shear_modulus_(law.elastic.shear_modulus()),

@@ -8,7 +8,7 @@ namespace vadose::law {
 
 /// Liquid with a shear viscosity and no bulk viscosity.
 struct NewtonianFluid {
-  static constexpr bool inviscid = false;
+  static constexpr bool inviscid = false;  ///< has viscous stress
 
   Real dynamic_viscosity = unset;  ///< mu [Pa s], > 0; water at 20 C: 1.0e-3
 

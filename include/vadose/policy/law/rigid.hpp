@@ -8,7 +8,7 @@ namespace vadose::law {
 /// Skeleton that does not deform: seepage only. The stress stays what it was and the solid sets
 /// no limit to the time step. Models recognise it by `rigid`.
 struct Rigid {
-  static constexpr bool rigid = true;
+  static constexpr bool rigid = true;  ///< does not move
 
   /// No history.
   template <class T>

@@ -42,8 +42,9 @@ struct Mobilisation {
   Real peak_shear_strain = 0;      ///< plastic shear strain at the peak [-], >= 0
   Real critical_shear_strain = 0;  ///< plastic shear strain at the critical state [-]; 0: off
   Strength<Real> onset = {};       ///< at zero plastic shear; as_peak: constant up to the peak
+  /// At the critical state.
   Strength<Real> critical = {.cohesion = as_peak, .friction_angle = as_peak, .dilation_angle = 0};
-  ShearMeasure measure = ShearMeasure::engineering;
+  ShearMeasure measure = ShearMeasure::engineering;  ///< of plastic shear
 
   /// True when the strength changes with plastic shear.
   bool active() const noexcept { return critical_shear_strain != 0; }

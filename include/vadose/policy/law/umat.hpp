@@ -62,8 +62,8 @@ struct Umat {
   std::string name = "MATERIAL";   ///< CMNAME
   std::vector<Real> initial = {};  ///< STATEV of a new point; missing ones are 0
 
-  using State = detail::UmatState<StateVariables>;
-  static constexpr bool scalar_only = true;
+  using State = detail::UmatState<StateVariables>;  ///< STATEV
+  static constexpr bool scalar_only = true;         ///< called point by point
 
   /// Refuses a missing routine or modulus and too many start values.
   void validate() const {
@@ -73,8 +73,10 @@ struct Umat {
                   StateVariables, "-");
   }
 
+  /// E_c [Pa], as given.
   Real p_wave_modulus(const State&) const noexcept { return modulus; }
 
+  /// STATEV of a new point.
   State initial_state() const noexcept {
     State state;
     if constexpr (StateVariables > 0)
