@@ -2,6 +2,8 @@
 // History files: on disk after every row, numbers read back bit for bit.
 
 #include <doctest/doctest.h>
+#include <signal.h>
+#include <sys/resource.h>
 #include <bit>
 #include <cstdint>
 #include <cstdlib>
@@ -94,6 +96,32 @@ TEST_CASE("history: wrong rows, wrong names and unwritable paths are refused") {
   CHECK(error_message<io::OutputError>([&] {
           io::History(below, {{"time", "s"}});
         }).find("/dev/null") != std::string::npos);
+}
+
+TEST_CASE("history: a row that does not fit on the disk leaves no part, and later rows follow") {
+  const std::string path = history_path("full.csv");
+  {
+    io::History history(path, {{"time", "s"}, {"inflow", "kg"}});
+    history.add({1, 0.5});
+    // The disk is full in the middle of the next row: a limit on the size of files.
+    rlimit before{};
+    REQUIRE(getrlimit(RLIMIT_FSIZE, &before) == 0);
+    rlimit small = before;
+    small.rlim_cur = std::filesystem::file_size(path) + 4;
+    const auto handler = signal(SIGXFSZ, SIG_IGN);
+    REQUIRE(setrlimit(RLIMIT_FSIZE, &small) == 0);
+    const std::string message = error_message<io::OutputError>([&] { history.add({2, 1.0 / 3}); });
+    REQUIRE(setrlimit(RLIMIT_FSIZE, &before) == 0);
+    signal(SIGXFSZ, handler);
+    CHECK(message == "cannot write file '" + path + "': File too large");
+    CHECK(lines_of(path) == std::vector<std::string>{"time [s],inflow [kg]", "1,0.5"});
+    history.add({3, 0.25});
+  }
+  CHECK(lines_of(path) == std::vector<std::string>{"time [s],inflow [kg]", "1,0.5", "3,0.25"});
+  std::filesystem::remove(path);
+  CHECK(error_message<io::OutputError>([&] {
+          io::History("/dev/full", {{"time", "s"}});
+        }) == "cannot write file '/dev/full': No space left on device");
 }
 
 TEST_CASE("history: files append, move and tell that they are closed") {

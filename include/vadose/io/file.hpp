@@ -96,6 +96,21 @@ class File {
     if (std::fflush(file_) != 0) fail("write");
   }
 
+  /// Writes text and hands it to the system, all of it or nothing: where that fails (a full disk), the
+  /// file ends as before and can go on.
+  void append_whole(std::string_view text) {
+    flush();
+    const off_t end = ::ftello(file_);
+    try {
+      write(text);
+      flush();
+    } catch (const OutputError&) {
+      std::clearerr(file_);
+      if (end >= 0 && ::ftruncate(::fileno(file_), end) == 0) ::fseeko(file_, end, SEEK_SET);
+      throw;
+    }
+  }
+
   /// Hands everything written so far to the disk: it outlives a power failure.
   void sync() {
     flush();

@@ -39,7 +39,8 @@ class History {
   History(const std::string& path, std::initializer_list<Quantity> columns)
       : History(path, std::span<const Quantity>(columns.begin(), columns.size())) {}
 
-  /// Appends one row with a value for every column.
+  /// Appends one row with a value for every column. Where that fails (OutputError, also on a full disk)
+  /// no part of it is in the file, and later rows can follow.
   void add(std::span<const Real> values) {
     if (values.size() != columns_)
       throw OutputError("cannot write file '" + file_.path() + "': row has " +
@@ -52,8 +53,7 @@ class History {
       if (!row.empty()) row += ',';
       row += text;
     }
-    file_.write(row + "\n");
-    file_.flush();
+    file_.append_whole(row + "\n");
   }
   /// The same with a list in braces.
   void add(std::initializer_list<Real> values) {
