@@ -5,6 +5,7 @@
 
 #include <doctest/doctest.h>
 
+#include "../unit/restart_support.hpp"
 #include "cases/terzaghi.hpp"
 #include "cases/unsaturated_consolidation.hpp"
 #include "check_case.hpp"
@@ -87,6 +88,12 @@ TEST_CASE("printed equations: saturated homogeneous soil needs no mending") {
   // Bounds of the default scheme at 10 cells.
   const Terzaghi column{.conductivity = 1e-3};
   for (const Real e : errors<Printed<>>(column)) CHECK(e <= 0.005);
+}
+
+TEST_CASE("printed equations: a run that is saved and taken up again has the same bits") {
+  PrintedSolver run(pond()), other(pond());
+  REQUIRE(restart_test::steps(other, 3));
+  for (int i = 0; i < 5; ++i) restart_test::check_taken_up(run, other, 20);
 }
 
 TEST_CASE("printed equations: the step of explicit drag") {

@@ -272,8 +272,8 @@ class ReadPoints {
   typename Points::Storage stored_;
 };
 
-/// What hosts and output read of the cells between steps. Steps read nothing of the grid that an
-/// earlier step left there.
+/// What hosts, output and resampling (the kind of every cell, slivers too) read of the cells between
+/// steps. Steps read nothing else of the grid that an earlier step left there.
 template <class A, class G>
 void put_cells(A& a, G& nodes) {
   const std::size_t size = nodes.dof.size();
@@ -283,20 +283,20 @@ void put_cells(A& a, G& nodes) {
     if constexpr (A::reading)
       if (owner < -1 || owner >= static_cast<std::int64_t>(size))
         a.refuse("pressure cell", "does not exist");
-    if (owner != static_cast<std::int32_t>(i)) continue;
     auto& cell = nodes.cell[i];
-    a.value("cell pressure", cell.pressure);
-    a.value("cell saturation", cell.saturation);
-    a.value("cell porosity", cell.porosity);
-    a.value("cell water", cell.water);
-    a.value("cell fill", cell.raw_fill);
-    for (auto& x : cell.centroid) a.value("cell centroid", x);
     auto kind = static_cast<std::uint8_t>(cell.kind);
     a.value("cell kind", kind);
     if constexpr (A::reading) {
       if (kind > static_cast<std::uint8_t>(CellKind::free)) a.refuse("cell kind", "is impossible");
       cell.kind = static_cast<CellKind>(kind);
     }
+    if (owner != static_cast<std::int32_t>(i)) continue;
+    a.value("cell pressure", cell.pressure);
+    a.value("cell saturation", cell.saturation);
+    a.value("cell porosity", cell.porosity);
+    a.value("cell water", cell.water);
+    a.value("cell fill", cell.raw_fill);
+    for (auto& x : cell.centroid) a.value("cell centroid", x);
   }
 }
 

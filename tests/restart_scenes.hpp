@@ -1,0 +1,115 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+// One scene for any model: soil with a step in it, water on it and beside it, and every condition
+// that keeps something between steps.
+
+#include <type_traits>
+
+#include <vadose/model/model.hpp>
+#include <vadose/scene/scene.hpp>
+#include <vadose/solver/scheme.hpp>
+#include <vadose/solver/solver.hpp>
+
+#include "unit/restart_support.hpp"
+
+namespace restart_test {
+
+template <class M>
+vadose::Material<M> any_soil() {
+  vadose::Material<M> m{.name = "soil", .porosity = 0.4};
+  if constexpr (!vadose::is_rigid<M>) {
+    m.solid_density = 2650;
+    m.skeleton = {.young_modulus = 2e6, .poisson_ratio = 0.3};
+  }
+  if constexpr (vadose::is_unsaturated<M>) {
+    m.lambda = 0.63;
+    m.retention = {.a = 3};
+  }
+  if constexpr (vadose::has_liquid<M>) m.conductivity = {.saturated_conductivity = 1e-3};
+  return m;
+}
+
+/// What the liquid meets: `printed` where a scheme knows open surfaces and closed walls only.
+template <class M>
+void add_liquid_conditions(vadose::Scene<M>& scene, bool printed) {
+  using vadose::Face;
+  using vadose::Real;
+  if (printed) {
+    scene.add(vadose::bc::ZeroSuction{});
+    return;
+  }
+  scene.add(vadose::bc::Drained{.face = Face::bottom, .active = [](Real t) { return t > 0.03; }});
+  scene.add(vadose::bc::Rain{.rate = 0.05});
+  if constexpr (M::Kinematics::dim > 1)
+    scene.add(vadose::bc::Reservoir{.face = Face::right,
+                                    .function = [](Real t) { return t < 0.02 ? 0.25 : 0.15; }});
+}
+
+/// Soil 0.4 m high, water above it in 1D and beside it else.
+template <class M>
+vadose::Scene<M> any_scene(bool printed = false) {
+  using vadose::Real;
+  using vadose::Vec;
+  constexpr int dim = M::Kinematics::dim, up = dim - 1;
+  const Real length = dim == 3 ? 0.4 : 0.8;
+  Vec<dim> low = Vec<dim>::Zero(), high = Vec<dim>::Constant(length);
+  high[up] = 0.8;
+  vadose::Scene<M> scene({.box = {low, high}, .cell_size = 0.1});
+  scene.gravity[up] = -9.81;
+  Vec<dim> soil_top = high, water_low = low, water_top = high;
+  soil_top[up] = 0.4;
+  water_low[up] = dim == 1 && vadose::has_skeleton<M> ? 0.4 : 0;
+  water_top[up] = dim == 1 ? 0.6 : 0.3;
+  if (dim > 1) soil_top[0] = water_low[0] = 0.5 * length;
+  if constexpr (vadose::has_skeleton<M>) {
+    vadose::SoilOptions<dim> start;
+    if constexpr (vadose::is_unsaturated<M>)
+      start.saturation = 0.6;
+    else if constexpr (vadose::has_liquid<M>)
+      start.water_table = 0.4;
+    scene.add_soil(vadose::box<dim>(low, soil_top), any_soil<M>(), start);
+    if constexpr (!vadose::is_rigid<M>) {
+      scene.add(vadose::bc::Fixed{.face = vadose::Face::bottom});
+      Vec<dim> edge = low, force = Vec<dim>::Zero();
+      edge[up] = 0.35;
+      force[up] = -1e3;
+      scene.add(vadose::bc::Traction<dim>{.region = vadose::box<dim>(edge, soil_top),
+                                          .traction = force,
+                                          .time_factor = [](Real t) { return 10 * t; }});
+    }
+    if constexpr (vadose::has_liquid<M>) add_liquid_conditions(scene, printed);
+  }
+  if constexpr (vadose::has_liquid<M>) {
+    scene.liquid.bulk_modulus = 1e6;
+    Vec<dim> drift = Vec<dim>::Zero();
+    if (dim > 1) drift[0] = 1.5;
+    scene.add_water(vadose::box<dim>(water_low, water_top),
+                    {.surface_level = water_top[up], .velocity = drift});
+  }
+  return scene;
+}
+
+/// A run of the scene is saved and taken up `times` times, `apart` steps after one another, each time
+/// in a solver that has gone elsewhere and with another number of threads.
+template <class M, class Scheme>
+void check_any_restart(int times, int apart, bool printed = false) {
+  using S = vadose::Solver<M, Scheme>;
+  const auto scene = any_scene<M>(printed);
+  typename S::Options options;
+  if constexpr (!std::is_same_v<Scheme, vadose::scheme::SemiImplicit>) options.dt_max = 2e-3;
+  options.escaped = vadose::Escape::outflow;
+  options.resampling.on = vadose::has_liquid<M>;
+  S run(scene, options);
+  options.threads = 2;
+  S other(scene, options);
+  REQUIRE(steps(other, 3));
+  for (int i = 0; i < times; ++i) {
+    CAPTURE(run.steps());
+    check_taken_up(run, other, apart);
+  }
+  MESSAGE(run.last_step().text(), "; ", run.solid().size(), " solid, ", run.liquid().size(),
+          " liquid points");
+}
+
+}  // namespace restart_test
