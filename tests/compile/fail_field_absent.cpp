@@ -1,4 +1,5 @@
 // expect: vadose: this model does not store the field that is asked for
+// mistake: reads a field that the model does not store
 // SPDX-License-Identifier: MIT
 #include <vadose/solver/solver.hpp>
 

@@ -1,4 +1,5 @@
 // expect: vadose: Conductivity needs `Real conductivity\(
+// mistake: conductivity without `conductivity(Se, n)`
 // SPDX-License-Identifier: MIT
 #include <vadose/model/check_model.hpp>
 

@@ -1,4 +1,5 @@
 // expect: vadose: Conductivity needs `void validate\(\)
+// mistake: conductivity without `validate()`
 // SPDX-License-Identifier: MIT
 #include <vadose/model/check_model.hpp>
 

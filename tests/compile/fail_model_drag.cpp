@@ -1,4 +1,5 @@
 // expect: vadose: Drag needs `Real coefficient\(
+// mistake: drag without `coefficient(n, S, k, unit_weight)`
 // SPDX-License-Identifier: MIT
 #include <vadose/model/check_model.hpp>
 

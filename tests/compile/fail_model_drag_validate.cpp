@@ -1,4 +1,5 @@
 // expect: vadose: Drag needs `void validate\(\)
+// mistake: drag without `validate()`
 // SPDX-License-Identifier: MIT
 #include <vadose/model/check_model.hpp>
 

@@ -1,4 +1,5 @@
 // expect: vadose: a model with NoLiquid takes Retention swrc::AlwaysSaturated
+// mistake: retention curve in a dry model
 // SPDX-License-Identifier: MIT
 #include <vadose/model/check_model.hpp>
 

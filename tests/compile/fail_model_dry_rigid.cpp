@@ -1,4 +1,5 @@
 // expect: vadose: Skeleton law::Rigid without Liquid
+// mistake: rigid soil without water
 // SPDX-License-Identifier: MIT
 #include <vadose/model/check_model.hpp>
 

@@ -1,4 +1,5 @@
 // expect: vadose: the model has neither Skeleton nor Liquid
+// mistake: neither soil nor water
 // SPDX-License-Identifier: MIT
 #include <vadose/model/check_model.hpp>
 

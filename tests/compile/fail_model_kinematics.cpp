@@ -1,4 +1,5 @@
 // expect: vadose: Kinematics must be Uniaxial
+// mistake: four dimensions
 // SPDX-License-Identifier: MIT
 #include <vadose/model/check_model.hpp>
 

@@ -1,4 +1,5 @@
 // expect: vadose: Skeleton needs `Real p_wave_modulus\(
+// mistake: law without `p_wave_modulus(state)`
 // SPDX-License-Identifier: MIT
 #include <vadose/model/check_model.hpp>
 

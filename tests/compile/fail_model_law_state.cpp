@@ -1,4 +1,5 @@
 // expect: vadose: Skeleton needs a State
+// mistake: law without `State`
 // SPDX-License-Identifier: MIT
 #include <vadose/model/check_model.hpp>
 

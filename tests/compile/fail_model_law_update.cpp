@@ -1,4 +1,5 @@
 // expect: vadose: Skeleton needs `Status update\(
+// mistake: law without `update(step, stress, state)`
 // SPDX-License-Identifier: MIT
 #include <vadose/model/check_model.hpp>
 

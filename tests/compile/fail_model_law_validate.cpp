@@ -1,4 +1,5 @@
 // expect: vadose: Skeleton needs `void validate\(\)
+// mistake: law without `validate()`
 // SPDX-License-Identifier: MIT
 #include <vadose/model/check_model.hpp>
 

@@ -1,4 +1,5 @@
 // expect: vadose: Liquid needs `inviscid`
+// mistake: liquid without `inviscid`
 // SPDX-License-Identifier: MIT
 #include <vadose/model/check_model.hpp>
 

@@ -1,4 +1,5 @@
 // expect: vadose: the model has no alias Conductivity
+// mistake: model without the alias Conductivity
 // SPDX-License-Identifier: MIT
 #include <vadose/model/check_model.hpp>
 

@@ -1,4 +1,5 @@
 // expect: vadose: the model has no alias Drag
+// mistake: model without the alias Drag
 // SPDX-License-Identifier: MIT
 #include <vadose/model/check_model.hpp>
 

@@ -1,4 +1,5 @@
 // expect: vadose: the model has no alias Kinematics
+// mistake: model without the alias Kinematics
 // SPDX-License-Identifier: MIT
 #include <vadose/model/check_model.hpp>
 

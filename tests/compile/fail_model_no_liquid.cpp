@@ -1,4 +1,5 @@
 // expect: vadose: the model has no alias Liquid
+// mistake: model without the alias Liquid
 // SPDX-License-Identifier: MIT
 #include <vadose/model/check_model.hpp>
 

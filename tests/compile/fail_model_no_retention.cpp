@@ -1,4 +1,5 @@
 // expect: vadose: the model has no alias Retention
+// mistake: model without the alias Retention
 // SPDX-License-Identifier: MIT
 #include <vadose/model/check_model.hpp>
 

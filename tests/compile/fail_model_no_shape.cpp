@@ -1,4 +1,5 @@
 // expect: vadose: the model has no alias Shape
+// mistake: model without the alias Shape
 // SPDX-License-Identifier: MIT
 #include <vadose/model/check_model.hpp>
 

@@ -1,4 +1,5 @@
 // expect: vadose: the model has no alias Skeleton
+// mistake: model without the alias Skeleton
 // SPDX-License-Identifier: MIT
 #include <vadose/model/check_model.hpp>
 

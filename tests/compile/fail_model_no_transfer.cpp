@@ -1,4 +1,5 @@
 // expect: vadose: the model has no alias Transfer
+// mistake: model without the alias Transfer
 // SPDX-License-Identifier: MIT
 #include <vadose/model/check_model.hpp>
 

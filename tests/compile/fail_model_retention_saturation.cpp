@@ -1,4 +1,5 @@
 // expect: vadose: Retention needs `Real saturation\(
+// mistake: retention without `saturation(s, n)`
 // SPDX-License-Identifier: MIT
 #include <vadose/model/check_model.hpp>
 

@@ -1,4 +1,5 @@
 // expect: vadose: Retention needs `Real saturation_slope\(
+// mistake: retention without `saturation_slope(s, n)`
 // SPDX-License-Identifier: MIT
 #include <vadose/model/check_model.hpp>
 

@@ -1,4 +1,5 @@
 // expect: vadose: Retention needs `void validate\(\)
+// mistake: retention without `validate()`
 // SPDX-License-Identifier: MIT
 #include <vadose/model/check_model.hpp>
 

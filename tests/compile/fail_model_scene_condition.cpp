@@ -1,4 +1,5 @@
 // expect: vadose: Scene::add takes a condition of vadose::bc
+// mistake: a number as boundary condition
 // SPDX-License-Identifier: MIT
 #include <vadose/scene/scene.hpp>
 

@@ -1,4 +1,5 @@
 // expect: vadose: this boundary condition acts on the liquid
+// mistake: condition of the liquid in a dry scene
 // SPDX-License-Identifier: MIT
 #include <vadose/scene/scene.hpp>
 

@@ -1,4 +1,5 @@
 // expect: vadose: add_soil needs a model with a Skeleton
+// mistake: soil in a scene of free water
 // SPDX-License-Identifier: MIT
 #include <vadose/scene/scene.hpp>
 

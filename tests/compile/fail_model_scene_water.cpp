@@ -1,4 +1,5 @@
 // expect: vadose: add_water needs a model with a Liquid
+// mistake: water in a dry scene
 // SPDX-License-Identifier: MIT
 #include <vadose/scene/scene.hpp>
 

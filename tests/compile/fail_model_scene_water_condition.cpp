@@ -1,4 +1,5 @@
 // expect: vadose: this boundary condition acts on soil
+// mistake: condition of the soil in a scene of free water
 // SPDX-License-Identifier: MIT
 #include <vadose/scene/scene.hpp>
 

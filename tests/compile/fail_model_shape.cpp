@@ -1,4 +1,5 @@
 // expect: vadose: Shape needs `support` and `weights
+// mistake: shape functions without `weights`
 // SPDX-License-Identifier: MIT
 #include <vadose/model/check_model.hpp>
 

@@ -1,4 +1,5 @@
 // expect: vadose: Transfer needs `affine`
+// mistake: transfer without `blends`
 // SPDX-License-Identifier: MIT
 #include <vadose/model/check_model.hpp>
 

@@ -1,4 +1,5 @@
 // expect: vadose: a model with NoSkeleton takes Retention swrc::AlwaysSaturated
+// mistake: retention curve without soil
 // SPDX-License-Identifier: MIT
 #include <vadose/model/check_model.hpp>
 

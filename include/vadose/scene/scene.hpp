@@ -124,6 +124,21 @@ class Scene {
     materials_.push_back(std::move(copy));
   }
 
+  /// Refuses a region of another dimension, in one sentence.
+  template <int Other>
+  requires(Other != dim) void add_soil(const Region<Other>& /*region*/, const Material<M>& = {},
+                                       const SoilOptions<dim>& = {}) {
+    static_assert(Other == dim, "vadose: the region has another dimension than the scene's model");
+  }
+  /// Refuses a material of another model, in one sentence.
+  template <class Other>
+  requires(!std::is_same_v<Other, M>) void add_soil(const Region<dim>& /*region*/,
+                                                    const Material<Other>& /*material*/,
+                                                    const SoilOptions<dim>& = {}) {
+    static_assert(std::is_same_v<Other, M>,
+                  "vadose: the material is one of another model than the scene's");
+  }
+
   /// Puts free water into a region.
   template <class Model = M>
   void add_water(const Region<dim>& region, const WaterOptions<dim>& options = {}) {
