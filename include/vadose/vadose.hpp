@@ -98,6 +98,7 @@
 #include <vadose/solver/add_bodies.hpp>
 #include <vadose/solver/assemble.hpp>
 #include <vadose/solver/escaped_points.hpp>
+#include <vadose/solver/estimate.hpp>
 #include <vadose/solver/gather_films.hpp>
 #include <vadose/solver/release_films.hpp>
 #include <vadose/solver/report.hpp>

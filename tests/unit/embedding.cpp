@@ -79,6 +79,44 @@ TEST_CASE("embedding: an observer sees every step, may stop the run, and changes
   CHECK(watched.steps() == plain.steps() + 1);
 }
 
+TEST_CASE("embedding: the estimate goes on with the trend of the step, down to its floor") {
+  using vd::detail::StepTrend;
+  using vd::detail::TrialMark;
+  // Steps of c / t from t = 1 s on, as a wetting front brings them about.
+  const Real floor = 2e-3;
+  const auto step_at = [](Real t) { return 0.02 / t; };
+  std::vector<TrialMark> marks{{0, 1, 0}};
+  Real t = 1;
+  while (t < 3) {
+    t += step_at(t);
+    marks.push_back({0, t, marks.back().step + 1});
+  }
+  const StepTrend trend = StepTrend::of(marks);
+  CHECK(trend.power == doctest::Approx(-1).epsilon(0.01));
+  for (const Real end : {5.0, 50.0}) {
+    std::int64_t steps = 0;
+    for (Real now = t; now < end; now += std::max(floor, step_at(now))) ++steps;
+    CHECK(trend.steps(t, end, floor) == doctest::Approx(static_cast<Real>(steps)).epsilon(0.01));
+  }
+  CHECK(trend.steps(t, t, floor) == 0);
+  // Steps that only scatter have no trend.
+  std::vector<TrialMark> even{{0, 1, 0}};
+  for (int i = 0; i < 400; ++i)
+    even.push_back({0, even.back().time + (i * 7919 % 13 < 6 ? 0.9e-2 : 1.1e-2), i + 1});
+  const StepTrend none = StepTrend::of(even);
+  CHECK(none.power == 0);
+  CHECK(none.steps(5, 105, floor) == doctest::Approx(1e4).epsilon(0.02));
+}
+
+TEST_CASE("embedding: no step of a wet column is below the floor of the estimate") {
+  S solver = column(1);
+  for (int i = 0; i < 20; ++i) REQUIRE(solver.step().status == vd::Status::ok);
+  const Real floor = vd::detail::shortest_step(solver.state());
+  CHECK(floor <= solver.last_step().dt * (1 + 1e-3));
+  CHECK(floor == doctest::Approx(solver.last_step().dt).epsilon(0.01));
+  CHECK(column(0.5).estimate(0.1, 0).shortest_dt <= floor * (1 + 1e-3));
+}
+
 TEST_CASE("embedding: the estimate of a short run counts its steps") {
   S solver = column(0.5);
   const vd::Estimate short_run = solver.estimate(0.05, 100);  // the trial reaches the end

@@ -8,12 +8,14 @@
 #include <chrono>
 #include <cmath>
 #include <string>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
 #include <vadose/solver/add_bodies.hpp>
 #include <vadose/solver/assemble.hpp>
 #include <vadose/solver/escaped_points.hpp>
+#include <vadose/solver/estimate.hpp>
 #include <vadose/solver/gather_films.hpp>
 #include <vadose/solver/release_films.hpp>
 #include <vadose/solver/report.hpp>
@@ -72,29 +74,6 @@ struct EquilibriumReport {
   std::int64_t steps = 0;  ///< taken
 };
 
-/// What a run will cost.
-struct Estimate {
-  std::size_t solid_points = 0;       ///< at the start
-  std::size_t liquid_points = 0;      ///< at the start
-  std::size_t blocks = 0;             ///< blocks of 64 cells that exist
-  Real dt = 0;                        ///< mean step at the end of the trial [s]
-  StepLimit limit = StepLimit::none;  ///< what limits it
-  std::int64_t steps = 0;             ///< to the end time
-  Real seconds = 0;                   ///< wall time of these, without output
-  Real megabytes = 0;                 ///< of points and grid
-
-  /// A few lines for people.
-  std::string text() const {
-    char buffer[400];
-    std::snprintf(buffer, sizeof buffer,
-                  "points: %zu solid, %zu liquid; blocks of 64 cells: %zu; memory %.1f MB\n"
-                  "step: %.3g s, limited by %s; %lld steps, about %.3g s of wall time\n",
-                  solid_points, liquid_points, blocks, megabytes, dt, name(limit),
-                  static_cast<long long>(steps), seconds);
-    return buffer;
-  }
-};
-
 /// What a run remembers besides its state.
 struct RunMemory {
   std::vector<Real> start;  ///< position of every solid point at the start, by id [m]
@@ -119,6 +98,14 @@ class Solver {
 
   /// A run of a scene, which may go when this returns.
   explicit Solver(const Scene<M>& scene, const Options& options = {});
+
+  /// Refuses a scene of another model, in one sentence.
+  template <class Other>
+  requires(!std::is_same_v<Other, M>) explicit Solver(const Scene<Other>& /*scene*/,
+                                                      const Options& = {}) {
+    static_assert(std::is_same_v<Other, M>,
+                  "vadose: the scene is one of another model than the solver's");
+  }
 
   Real time() const noexcept { return state_.time; }             ///< [s]
   std::int64_t steps() const noexcept { return state_.step; }    ///< taken so far
@@ -225,19 +212,18 @@ class Solver {
   }
 
   /// Cost of a run to time t_end [s]. It runs a copy for `trial_seconds` of wall time, or to the end
-  /// if that comes first, and takes step and pace of the second half of that for the rest: the
-  /// first steps of wet soil are neither as short nor as dear as those that follow.
+  /// if that comes first, and takes the pace of the second half of it for the rest. The step goes on
+  /// as in the trial: soil that wets shortens it, down to the step of a scene that is wet throughout.
+  /// What has not begun in the trial (rain that starts later, a slide) is not in the estimate.
   Estimate estimate(Real t_end, Real trial_seconds = 1) const {
     using Clock = std::chrono::steady_clock;
     const auto start = Clock::now();
-    const auto spent = [&] { return std::chrono::duration<Real>(Clock::now() - start).count(); };
     Solver copy = *this;
-    struct Mark {
-      Real wall, time;
-      std::int64_t step;
+    const auto now = [&] {
+      return detail::TrialMark{std::chrono::duration<Real>(Clock::now() - start).count(),
+                               copy.time(), copy.steps()};
     };
-    const auto now = [&] { return Mark{spent(), copy.time(), copy.steps()}; };
-    std::vector<Mark> marks{now()};
+    std::vector<detail::TrialMark> marks{now()};
     Estimate e;
     while (copy.time() < t_end && (marks.size() < 5 || marks.back().wall < trial_seconds)) {
       const StepReport report = copy.step(t_end);
@@ -245,20 +231,23 @@ class Solver {
       if (copy.time() < t_end || e.limit == StepLimit::none) e.limit = report.limit;
       marks.push_back(now());
     }
-    const Mark first = marks.front(), last = marks.back();
-    const auto middle = std::find_if(marks.begin(), marks.end(), [&](const Mark& m) {
-      return m.wall >= 0.5 * (first.wall + last.wall);
-    });
-    const Mark from = middle + 1 < marks.end() ? *middle : first;
-    const auto taken = static_cast<Real>(std::max<std::int64_t>(last.step - from.step, 1));
     e.solid_points = state_.solid.size();
     e.liquid_points = state_.liquid.size();
     e.blocks = static_cast<std::size_t>(state_.grid.slots());
-    e.dt = last.time > from.time ? (last.time - from.time) / taken : copy.last_step().dt;
-    const Real rest = e.dt > 0 ? max(0.0, t_end - last.time) / e.dt : 0;
-    e.steps = last.step - first.step + static_cast<std::int64_t>(std::ceil(rest - 1e-9));
-    e.seconds = last.wall - first.wall + rest * (last.wall - from.wall) / taken;
     e.megabytes = 1e-6 * static_cast<Real>(memory_bytes());
+    if (marks.size() < 2) return e;
+    const detail::TrialMark first = marks.front(), last = marks.back(),
+                            middle = marks[(marks.size() - 1) / 2];
+    const auto half = static_cast<Real>(last.step - middle.step);
+    detail::StepTrend trend = detail::StepTrend::of(marks);
+    e.dt = (last.time - middle.time) / half;
+    if constexpr (std::is_same_v<Scheme, scheme::Explicit>)
+      e.shortest_dt = std::min(detail::shortest_step(copy.state_), e.dt);
+    if (!(e.shortest_dt > 0)) trend = {.level = e.dt};
+    e.trend = trend.power;
+    const Real rest = trend.steps(last.time, t_end, e.shortest_dt);
+    e.steps = last.step - first.step + static_cast<std::int64_t>(std::ceil(rest - 1e-9));
+    e.seconds = last.wall - first.wall + rest * (last.wall - middle.wall) / half;
     return e;
   }
 
