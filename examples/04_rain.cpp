@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
 // Rain on 1 m of sand: below what the sand can take all of it goes in; above, the rest stands on the
 // ground, first as a film, then as points of free water. Writes rain_column_balance.csv and
-// rain_column_profiles.csv here, prints both ledgers and ends with status 1 if they do not close.
+// rain_column_profiles.csv here, prints both ledgers and ends with status 1 if they do not close or the
+// water is not where it should be.
 
 #include <cmath>
 #include <cstdio>
@@ -57,7 +58,10 @@ bool run(Real rain, vd::io::History& balance, vd::io::History& profiles) {
   }
   std::printf("\nrain of %g k_sat\n", rain / k_sat);
   vd::io::print_summary(stdout, solver);
-  return std::fabs(solver.water_balance().relative_closure()) <= 1e-12;
+  const auto w = solver.water_balance();
+  const Real standing = w.film + w.free;
+  const bool right_place = rain < k_sat ? standing < 1e-6 * w.rain : w.free > 0.1 * w.rain;
+  return right_place && std::fabs(w.relative_closure()) <= 1e-12;
 }
 
 }  // namespace
