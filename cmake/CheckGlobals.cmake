@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: MIT
-# The library keeps no state of its own and says nothing unless asked: no header has a variable of
-# static storage that can change, and none outside io writes to a stream.
+# The library keeps no state of its own, says nothing unless asked and leaves the process of its host
+# alone: no header has a variable of static storage that can change, none outside io writes to a stream,
+# none takes signals, exits, sets handlers, the locale, the environment or the working folder.
 #   cmake -D SOURCE_DIR=<repository> -P cmake/CheckGlobals.cmake
 cmake_minimum_required(VERSION 3.25)
 
@@ -20,6 +21,9 @@ foreach(header IN LISTS headers)
     if(NOT header MATCHES "^vadose/io/"
        AND code MATCHES "std::(cout|cerr|clog)|(^|[^a-z_n])(printf|puts|putchar|fprintf|vprintf)[ \t]*\\(")
       string(APPEND errors "  ${header}:${number}: writes to a stream: ${line}\n")
+    endif()
+    if(code MATCHES "(^|[^a-z_])(signal|sigaction|std::raise|abort|_?exit|quick_exit|atexit|at_quick_exit|set_terminate|set_new_handler|setlocale|fesetround|setenv|putenv|srand|chdir|current_path)[ \t]*\\(")
+      string(APPEND errors "  ${header}:${number}: acts on the process of the host: ${line}\n")
     endif()
   endforeach()
 endforeach()

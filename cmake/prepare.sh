@@ -66,6 +66,15 @@ require_packages() {
   have "$cxx" || fail "compiler $cxx not found"
 }
 
+# offer <package> <command>...: installs a package unless the command succeeds; never a reason to stop.
+offer() {
+  package=$1
+  shift
+  "$@" >/dev/null 2>&1 && return 0
+  if apt_system && (install_packages "$package") && "$@" >/dev/null 2>&1; then return 0; fi
+  say "no $package: what needs it is skipped"
+}
+
 # picture_python: prints a python3 that has matplotlib.
 picture_python() {
   for python in python3 /usr/bin/python3; do
