@@ -112,4 +112,26 @@ void check_any_restart(int times, int apart, bool printed = false) {
           " liquid points");
 }
 
+template <class Preset>
+struct RigidSoil : Preset {
+  using Skeleton = vadose::law::Rigid;
+};
+
+inline constexpr vadose::PaperMends all_mends{.cell_average = true,
+                                              .saturation = true,
+                                              .porosity_slope = true,
+                                              .porosity_gradient = true,
+                                              .implicit_drag = true};
+
+/// A model under every scheme there is for it.
+template <class M>
+void check_schemes() {
+  check_any_restart<M, vadose::scheme::Explicit>(20, 17);
+  if constexpr (vadose::has_liquid<M>) {
+    check_any_restart<M, vadose::scheme::SemiImplicit>(20, 7);
+    check_any_restart<M, vadose::scheme::PaperLiteral<>>(20, 17, true);
+    check_any_restart<M, vadose::scheme::PaperLiteral<all_mends>>(20, 17, true);
+  }
+}
+
 }  // namespace restart_test
