@@ -7,7 +7,9 @@
 #include <chrono>
 #include <cstdint>
 #include <cstdio>
+#include <string>
 
+#include <vadose/core/error.hpp>
 #include <vadose/solver/report.hpp>
 
 namespace vadose::io {
@@ -39,15 +41,18 @@ class RunClock {
 template <class S>
 void print_preflight(std::FILE* out, const S& solver, Real t_end) {
   const auto e = solver.estimate(t_end);
+  std::string shrinking;
+  if (e.trend < -0.05)
+    shrinking = ", becoming shorter; " + check::text(e.shortest_dt) + " s when all is wet";
   std::fprintf(out,
                "before the run from t = %.6g s to %.6g s\n"
                "  points   %zu solid, %zu liquid\n"
                "  grid     %zu blocks of 64 cells, %.1f MB with the points\n"
-               "  step     %.3g s, limited by %s\n"
+               "  step     %.3g s, limited by %s%s\n"
                "  steps    %lld\n"
                "  wall     about %.3g s\n",
                solver.time(), t_end, e.solid_points, e.liquid_points, e.blocks, e.megabytes, e.dt,
-               name(e.limit), static_cast<long long>(e.steps), e.seconds);
+               name(e.limit), shrinking.c_str(), static_cast<long long>(e.steps), e.seconds);
 }
 
 /// Prints time, steps, points and both ledgers with their closure errors.
