@@ -259,6 +259,11 @@ void for_faces(const CellView<M>& view, F&& f) {
   });
 }
 
+/// Pressure of the soil cell at a held face: p + rho g dx, as outer_face() took it.
+inline Real own_pressure(const FaceFlux& face) noexcept {
+  return face.held_pressure - (face.soil_below ? 1 : -1) * face.head_gradient * face.distance;
+}
+
 /// Pressure at the surface of every soil cell at air or at a held wall: the mean of what is held at
 /// its faces; a closed surface carries the pressure of the cell there, so that it drives no flow.
 template <class M>
@@ -272,12 +277,16 @@ void find_reference_pressures(State<M>& state) {
               if (nodes.dof[static_cast<std::size_t>(e)] != e || cell.kind != CellKind::soil)
                 return;
               const CellView<M> view(state, local, slot);
+              // A cell without a cut has walls for its surface and no surface_point.
+              const bool cut = cell.at_air || cell.members > 1;
               const Real own =
-                  cell.pressure + hydrostatic(state, cell.centroid, cell.surface_point);
+                  cut ? cell.pressure + hydrostatic(state, cell.centroid, cell.surface_point) : 0;
               Real sum = 0, area = 0, shut = 0;
               for_faces(view, [&](int, const FaceFlux& face) {
                 if (face.kind != FaceKind::surface) return;
-                sum += face.area * (face.is_shut() ? own : face.held_pressure);
+                sum += face.area * (!face.is_shut() ? face.held_pressure
+                                    : cut           ? own
+                                                    : own_pressure(face));
                 area += face.area;
                 if (face.is_shut()) shut += face.area;
               });
