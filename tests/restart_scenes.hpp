@@ -97,7 +97,8 @@ void check_any_restart(int times, int apart, bool printed = false) {
   using S = vadose::Solver<M, Scheme>;
   const auto scene = any_scene<M>(printed);
   typename S::Options options;
-  if constexpr (!std::is_same_v<Scheme, vadose::scheme::SemiImplicit>) options.dt_max = 2e-3;
+  // Rigid soil has no other limit in its first semi-implicit step.
+  options.dt_max = std::is_same_v<Scheme, vadose::scheme::SemiImplicit> ? 0.05 : 2e-3;
   options.escaped = vadose::Escape::outflow;
   options.resampling.on = vadose::has_liquid<M>;
   S run(scene, options);

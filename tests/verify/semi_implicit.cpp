@@ -329,16 +329,17 @@ TEST_CASE("semi-implicit: same bits for any number of threads") {
 }
 
 TEST_CASE("semi-implicit: a run that is saved and taken up again has the same bits") {
-  const auto check = [](auto run) {
+  const auto check = [](auto run, Real first) {
+    run.advance_to(first);
     auto other = run;
     REQUIRE(restart_test::steps(other, 2));
     for (int i = 0; i < 6; ++i) restart_test::check_taken_up(run, other, 5);
     CHECK(run.last_step().solve.newton > 0);
   };
-  check(rained(0.1, 3e-4));  // limited by the change of saturation: the next step is in the file
-  check(ponded<Rigid>());
-  check(terzaghi(1e-4, 1e4, 1));
-  check(resting(0.2));
+  check(rained(0.1, 3e-4), 1);  // limited by the change of saturation: the next step is in the file
+  check(ponded<Rigid>(), 0.1);
+  check(terzaghi(1e-4, 1e4, 1), 1e-3);
+  check(resting(0.2), 1e-3);
 }
 
 TEST_CASE("dry soil takes the explicit step, to the last bit") {
