@@ -119,7 +119,8 @@ Real nodal_flux(const State<M>& state, const CellView<M>& view, int axis, const 
   constexpr Real corners = power<dim - 1>(2.0);
   if (face.kind == FaceKind::to_free) return face.saturation * velocity / corners;
   const std::int32_t side = face.is_from_above() ? view.entry() : view.neighbour(axis, -1);
-  const auto& soil = nodes.cell[static_cast<std::size_t>(nodes.dof[static_cast<std::size_t>(side)])];
+  const auto& soil =
+      nodes.cell[static_cast<std::size_t>(nodes.dof[static_cast<std::size_t>(side)])];
   return face_mobility(state, face, soil, 1) * head_gradient / corners -
          face_mobility(state, face, soil, checkerboard_inertia) *
              (face.head_gradient - mean_gradient / corners);

@@ -136,7 +136,7 @@ struct GridState {
   AlignedVector<Record> solid_out;   ///< solid velocity and its change
   AlignedVector<Record> liquid_in;   ///< liquid mass, momentum, force
   AlignedVector<Record> liquid_out;  ///< liquid velocity and its change
-  AlignedVector<Record> mixture;     ///< total volume flux q (lanes 0 .. 2), resistance of a node (4 .. 6)
+  AlignedVector<Record> mixture;     ///< q (lanes 0 .. 2), flow resistance of a node (4 .. 6)
   AlignedVector<Record> pore;        ///< sums over pore-water points of a cell
   AlignedVector<Record> free;        ///< sums over free-water points of a cell
   AlignedVector<Record> content;     ///< liquid momentum, content and storage of a cell

@@ -121,7 +121,8 @@ void add_cell([[maybe_unused]] const State<M>& state, const Cell<State<M>::dim>&
 /// face, or, where it lies between a sliver and the cell whose pressure the sliver shares, the surface
 /// on the sliver's far side. (The water of the sliver is at the nodes of that cell.)
 template <class M>
-std::size_t face_at_node(const State<M>& state, const std::int32_t* tile, int at, int axis) noexcept {
+std::size_t face_at_node(const State<M>& state, const std::int32_t* tile, int at,
+                         int axis) noexcept {
   constexpr int dim = State<M>::dim;
   const auto& nodes = state.nodes;
   const auto face = [&](std::int32_t cell) {
