@@ -71,7 +71,10 @@ Real gravity_head(const State<M>& state, int axis, Real distance) noexcept {
   return state.water.density * std::fabs(state.gravity[axis]) * distance;
 }
 
-/// Face between two soil cells with different pressures.
+/// Face between two soil cells with different pressures. The water moves as fast as the upstream
+/// saturation lets it, k H / (n S_up gamma), and there is as much of it as both cells hold in the mean:
+/// n (S_a + S_b) / 2. (With n S_up the fronts of rain run ahead: in cells of 0.1 m rms of S 0.0155 for
+/// 0.0067 after 4500 s, see tests/verify/rain_infiltration.cpp.)
 template <class M>
 void inside_face(const State<M>& state, int axis, const Cell<State<M>::dim>& a,
                  const Cell<State<M>::dim>& b, FaceFlux& face) {
@@ -85,6 +88,7 @@ void inside_face(const State<M>& state, int axis, const Cell<State<M>::dim>& a,
   face.saturation = up.saturation;
   face.conductivity = face_conductivity(state, up.material, up.conductivity, a.pressure, b.pressure,
                                         up.porosity, gravity_head(state, axis, distance));
+  if (up.saturation > 0) face.conductivity *= 0.5 * (a.saturation + b.saturation) / up.saturation;
 }
 
 /// Face between soil and a held pressure (free water, an open surface or a wall) at x_face along

@@ -123,6 +123,10 @@ struct FaceFlux {
   bool is_shut() const noexcept {
     return kind == FaceKind::surface && ((held < 0 && !fed) || thirsty);
   }
+  /// Whether the soil that lets the water pass is above: the upstream cell, at a boundary the soil.
+  bool is_from_above() const noexcept {
+    return kind == FaceKind::inside ? head_gradient > 0 : !soil_below;
+  }
 };
 
 /// All arrays of the grid; one entry per cell or node of the existing blocks.
@@ -132,7 +136,7 @@ struct GridState {
   AlignedVector<Record> solid_out;   ///< solid velocity and its change
   AlignedVector<Record> liquid_in;   ///< liquid mass, momentum, force
   AlignedVector<Record> liquid_out;  ///< liquid velocity and its change
-  AlignedVector<Record> mixture;     ///< total volume flux q (lanes 0 .. 2)
+  AlignedVector<Record> mixture;     ///< q (lanes 0 .. 2), flow resistance of a node (4 .. 6)
   AlignedVector<Record> pore;        ///< sums over pore-water points of a cell
   AlignedVector<Record> free;        ///< sums over free-water points of a cell
   AlignedVector<Record> content;     ///< liquid momentum, content and storage of a cell

@@ -214,12 +214,12 @@ void for_cells_around(const CellView<M>& node, F&& f) {
 }
 
 /// Faces along every axis through a node that count in its mean head gradient: position of the face
-/// and corner number of the cell above it.
+/// and corner numbers of the cells above and below it; -1: not around the node.
 template <int Dim>
 struct NodeFaces {
   int count[Dim] = {};
   std::size_t face[Dim][1 << (Dim - 1)];
-  int above[Dim][1 << (Dim - 1)];
+  int above[Dim][1 << (Dim - 1)], below[Dim][1 << (Dim - 1)];
 };
 
 template <class M>
@@ -232,11 +232,18 @@ NodeFaces<State<M>::dim> faces_of_node(const CellView<M>& node) {
     const auto e = static_cast<std::size_t>(node.tile[at]);
     for (int d = 0; d < dim; ++d) {
       if (corner[d]) continue;
-      const std::size_t i = e * dim + static_cast<std::size_t>(d);
+      const std::size_t i = face_at_node(node.state, node.tile, at, d);
       const FaceFlux& f = node.state.nodes.face[i];
       if (f.kind == FaceKind::closed || f.is_shut()) continue;
-      faces.face[d][faces.count[d]] = i;
-      faces.above[d][faces.count[d]++] = corner_number(corner);
+      const int k = faces.count[d]++;
+      const int upper = corner_number(corner), lower = upper | (1 << d);
+      faces.face[d][k] = i;
+      faces.above[d][k] = upper;
+      faces.below[d][k] = lower;
+      if (i == e * dim + static_cast<std::size_t>(d)) continue;
+      // On the far side of a sliver, which lies between the node's plane and it.
+      faces.above[d][k] = f.soil_below ? -1 : lower;
+      faces.below[d][k] = f.soil_below ? upper : -1;
     }
   });
   return faces;
@@ -541,19 +548,33 @@ struct NodeAssembly {
   }
 
   /// Balance of the cells on both sides of a face: flux per pressure of the cell at `column`.
-  void add_flux(int axis, int above, int column, Real flux) {
-    block.value[above][column] -= state.dt * flux;
-    block.value[above | (1 << axis)][column] += state.dt * flux;
+  void add_flux(int axis, int k, int column, Real flux) {
+    const int above = faces.above[axis][k], below = faces.below[axis][k];
+    if (above >= 0) block.value[above][column] -= state.dt * flux;
+    if (below >= 0) block.value[below][column] += state.dt * flux;
+  }
+
+  /// The soil whose water passes a face of the node.
+  const Cell<dim>& soil_of(int axis, int k) const {
+    const FaceFlux& face = state.nodes.face[faces.face[axis][k]];
+    const int above = faces.above[axis][k], below = faces.below[axis][k];
+    const int corner = below < 0 || (above >= 0 && face.is_from_above()) ? above : below;
+    const auto owner = state.nodes.dof[static_cast<std::size_t>(cell[corner])];
+    return state.nodes.cell[static_cast<std::size_t>(owner)];
   }
 
   /// Flux through faces by the velocities of the node.
   void add_fluxes(int column, const Real (&liquid)[dim], const Real (&solid)[dim]) {
+    const Record& resistances = state.nodes.mixture[static_cast<std::size_t>(view.entry())];
     for (int d = 0; d < dim; ++d)
       for (int k = 0; k < faces.count[d]; ++k) {
         const FaceFlux& face = state.nodes.face[faces.face[d][k]];
         if (switches(face)) continue;
-        const Real share = face.area * face.saturation / (corners / 2);
-        add_flux(d, faces.above[d][k], column, share * response.porosity * (liquid[d] - solid[d]));
+        const Real weight = face.kind == FaceKind::to_free
+                                ? face.saturation
+                                : resistances[4 + d] * face_mobility(state, face, soil_of(d, k), 1);
+        add_flux(d, k, column,
+                 face.area / (corners / 2) * weight * response.porosity * (liquid[d] - solid[d]));
       }
   }
 
@@ -562,21 +583,15 @@ struct NodeAssembly {
     const int count = faces.count[axis];
     for (int k = 0; k < count; ++k) {
       const FaceFlux& face = state.nodes.face[faces.face[axis][k]];
-      if (face.kind != FaceKind::inside) continue;
-      const int above = faces.above[axis][k];
-      const int up = face.head_gradient > 0 ? above : above | (1 << axis);
-      const auto& donor =
-          state.nodes
-              .cell[static_cast<std::size_t>(state.nodes.dof[static_cast<std::size_t>(cell[up])])];
+      if (face.kind == FaceKind::to_free || switches(face)) continue;
       const Real mobility = face.area / (corners / 2) *
-                            face_mobility(state, face, donor.porosity,
-                                          state.soils[donor.material].material.unit_weight);
+                            face_mobility(state, face, soil_of(axis, k), checkerboard_inertia);
       for (int j = 0; j < count; ++j) {
         const FaceFlux& other = state.nodes.face[faces.face[axis][j]];
         const Real weight = mobility * ((j == k ? 1.0 : 0.0) - 1.0 / count);
-        const int over = faces.above[axis][j];
-        add_flux(axis, above, over, -weight * head_slope(state, other, true));
-        add_flux(axis, above, over | (1 << axis), -weight * head_slope(state, other, false));
+        const int above = faces.above[axis][j], below = faces.below[axis][j];
+        if (above >= 0) add_flux(axis, k, above, -weight * head_slope(state, other, true));
+        if (below >= 0) add_flux(axis, k, below, -weight * head_slope(state, other, false));
       }
     }
   }

@@ -34,6 +34,14 @@ struct NodeSums {
   bool has_soil = false;
   bool has_free = false;  ///< touches free water
   Real normal[Dim] = {};  ///< out of the soil, where closed_surface
+
+  /// Part of the control volume that is soil; the rest is free water [-].
+  Real soil_share() const noexcept { return soil_volume > 0 ? min(1.0, soil_volume / volume) : 0; }
+  /// Of the control volume; that of free water is 1. Volumetric, so that a trace of solid at a node
+  /// does not make it soil.
+  Real porosity() const noexcept {
+    return soil_volume > 0 ? 1 - (1 - pores / soil_volume) * soil_share() : 1;
+  }
 };
 
 /// Value and gradient of the hat function of corner `corner` (0 or 1 per axis) of a cell.
@@ -109,6 +117,28 @@ void add_cell([[maybe_unused]] const State<M>& state, const Cell<State<M>::dim>&
   }
 }
 
+/// Position of the face that counts at a node for the lower face of the cell at `at` in a tile: that
+/// face, or, where it lies between a sliver and the cell whose pressure the sliver shares, the surface
+/// on the sliver's far side. (The water of the sliver is at the nodes of that cell.)
+template <class M>
+std::size_t face_at_node(const State<M>& state, const std::int32_t* tile, int at,
+                         int axis) noexcept {
+  constexpr int dim = State<M>::dim;
+  const auto& nodes = state.nodes;
+  const auto face = [&](std::int32_t cell) {
+    return static_cast<std::size_t>(cell) * dim + static_cast<std::size_t>(axis);
+  };
+  const std::size_t near = face(tile[at]);
+  if (nodes.face[near].kind != FaceKind::closed) return near;
+  const int stride = BlockGrid<dim>::tile_stride(axis);
+  const std::int32_t cell = tile[at], low = tile[at - stride];
+  const std::int32_t owner = nodes.dof[static_cast<std::size_t>(cell)];
+  if (owner < 0 || cell == low || owner != nodes.dof[static_cast<std::size_t>(low)]) return near;
+  if (owner != low && owner != cell) return near;
+  const std::size_t far = face(owner == low ? tile[at + stride] : low);
+  return nodes.face[far].kind == FaceKind::inside ? near : far;
+}
+
 /// Gathers cells and faces around a node (local index in its block).
 template <class M>
 NodeSums<State<M>::dim> gather_node(const State<M>& state, const CellView<M>& view) {
@@ -139,9 +169,8 @@ NodeSums<State<M>::dim> gather_node(const State<M>& state, const CellView<M>& vi
     // Faces whose plane goes through the node: lower faces of the cells on its upper side.
     for (int d = 0; d < dim; ++d) {
       if (corner[d]) continue;
-      const FaceFlux& f = nodes.face[e * dim + static_cast<std::size_t>(d)];
-      if (f.kind == FaceKind::closed) continue;
-      if (f.is_shut()) continue;
+      const FaceFlux& f = nodes.face[face_at_node(state, view.tile, at, d)];
+      if (f.kind == FaceKind::closed || f.is_shut()) continue;
       open = open || f.kind == FaceKind::surface;
       ++faces[d];
       saturation[d] += f.saturation;
@@ -174,15 +203,6 @@ struct NodeMotion {
   Real solid_force[Dim] = {}, liquid_force[Dim] = {};  ///< [N]
   Real drag[Dim] = {};                                 ///< implicit, times the step [kg]
 };
-
-/// Porosity of the control volume of a node: n_I = 1 - (1 - n) min(1, V_s / V_c). Volumetric, so
-/// that a trace of solid at a node does not make it soil.
-template <int Dim>
-Real nodal_porosity(const NodeSums<Dim>& sums, Real skeleton_volume) noexcept {
-  if (!(sums.soil_volume > 0) || !(sums.volume > 0)) return 1;
-  const Real n = sums.pores / sums.soil_volume;
-  return 1 - (1 - n) * min(1.0, skeleton_volume / sums.volume);
-}
 
 /// DEVIATION: [Zhan] Eq. (20) prints the point force n p V grad N, without S, which pushes (1 - n) p at
 /// a pond: still water over soil does not stay still. Here the nodal liquid fraction weighs the
@@ -292,24 +312,28 @@ void apply_special(const State<M>& state, std::int32_t entry, NodeMotion<State<M
 }
 
 /// DEVIATION: [Zhan] Eq. (20) prints n m g / k without S; Eq. (2) has it, and so has this.
-/// Drag per velocity of a node along each axis, D_I = n S V_s coefficient, for a law linear in the
-/// relative velocity; a quadratic part is linearised at the closed-form root (see below).
+/// Drag per velocity of a node along each axis for a law linear in the relative velocity: its
+/// coefficient, per volume of liquid, times the liquid volume in the soil at the node. That is the mass
+/// that carries force and momentum, so that the answer of the liquid, k / gamma in the drag limit, does
+/// not depend on it: with the upstream n S V in its place soil of S = 0.3 would let in a third of what
+/// enters. A quadratic part is linearised at the closed-form root (see below). Grains that reach into
+/// free water, where no soil is around, are tied to it; loose they would ring for ever.
 template <class M>
-Real drag_coefficient(const State<M>& state, const NodeSums<State<M>::dim>& sums, Real porosity,
-                      Real volume, int axis) {
+Real drag_coefficient(const State<M>& state, const NodeSums<State<M>::dim>& sums,
+                      Real liquid_volume, int axis) {
   const Real s = max(sums.saturation[axis], 1e-12);
   const Real k = sums.conductivity[axis];
   const auto& material = state.soils[sums.material].material;
   if (!(k > 0)) return 1e30;
-  return porosity * s * volume *
-         drag::coefficient<Real>(material.drag, porosity, s, k, material.unit_weight);
+  return liquid_volume *
+         drag::coefficient<Real>(material.drag, sums.porosity(), s, k, material.unit_weight);
 }
 
 /// Factor 1 + B |w| / A by which a quadratic drag term raises the linear coefficient, with |w|
 /// after the step from the positive root of its equation (Forchheimer, closed form).
 template <class M>
 Real quadratic_drag_factor(const State<M>& state, const NodeSums<State<M>::dim>& sums,
-                           Real porosity, Real volume, const NodeMotion<State<M>::dim>& node,
+                           Real liquid_volume, const NodeMotion<State<M>::dim>& node,
                            const Real (&linear)[State<M>::dim]) {
   constexpr int dim = State<M>::dim;
   if constexpr (!QuadraticDrag<typename M::Drag>) {
@@ -326,10 +350,10 @@ Real quadratic_drag_factor(const State<M>& state, const NodeSums<State<M>::dim>&
       k += sums.conductivity[d] / dim;
       s += max(sums.saturation[d], 1e-12) / dim;
     }
+    if (!(k > 0)) return 1;
     const auto& material = state.soils[sums.material].material;
-    const Real b = porosity * s * volume *
-                   drag::quadratic<Real>(material.drag, porosity, s, k, material.unit_weight,
-                                         state.water.density);
+    const Real b = liquid_volume * drag::quadratic<Real>(material.drag, sums.porosity(), s, k,
+                                                         material.unit_weight, state.water.density);
     const Real p = 1 + state.dt * inverse * a;
     const Real q = state.dt * inverse * b;
     const Real w = 2 * std::sqrt(w2) / (p + std::sqrt(p * p + 4 * q * std::sqrt(w2)));
@@ -339,20 +363,19 @@ Real quadratic_drag_factor(const State<M>& state, const NodeSums<State<M>::dim>&
 
 /// New velocities of a node that may hold both phases; the drag feels a prescribed skeleton.
 template <class M>
-void advance_pair(const State<M>& state, const NodeSums<State<M>::dim>& sums, Real porosity,
-                  Real skeleton_volume, const Real (&prescribed)[State<M>::dim],
-                  NodeMotion<State<M>::dim>& node) {
+void advance_pair(const State<M>& state, const NodeSums<State<M>::dim>& sums,
+                  const Real (&prescribed)[State<M>::dim], NodeMotion<State<M>::dim>& node) {
   constexpr int dim = State<M>::dim;
   const Real dt = state.dt;
   const bool has_solid = is_rigid<M> ? sums.has_soil : node.solid_mass > 0;
   const bool has_water = node.liquid_mass > 0;
-  const Real volume = min(skeleton_volume, sums.volume);
-  const bool drags = has_water && has_solid && volume > 0 && sums.has_soil;
+  const Real liquid_volume = node.liquid_mass / state.water.density * sums.soil_share();
+  const bool drags = has_solid && has_water;
   Real linear[dim] = {};
   Real factor = 1;
   if (drags) {
-    for (int d = 0; d < dim; ++d) linear[d] = drag_coefficient(state, sums, porosity, volume, d);
-    factor = quadratic_drag_factor(state, sums, porosity, volume, node, linear);
+    for (int d = 0; d < dim; ++d) linear[d] = drag_coefficient(state, sums, liquid_volume, d);
+    factor = quadratic_drag_factor(state, sums, liquid_volume, node, linear);
   }
   for (int d = 0; d < dim; ++d) {
     const Real a = node.liquid_mass, b = node.solid_mass;
@@ -424,6 +447,16 @@ void store_velocities(State<M>& state, std::size_t i, const NodeMotion<State<M>:
     state.nodes.liquid_out[i] = velocity_record(before.liquid, after.liquid);
 }
 
+/// Head gradient that drives the flow through the soil at a node along an axis, per n (v^l - v^s):
+/// gamma / k of its soil and the inertia of a step [Pa s/m2].
+template <class M>
+Real resistance(const State<M>& state, const NodeSums<State<M>::dim>& sums, int axis) noexcept {
+  if (!(sums.soil_volume > 0) || !(sums.conductivity[axis] > 0)) return 0;
+  return state.water.density / (sums.porosity() * state.dt) +
+         sums.soil_share() * sums.saturation[axis] *
+             state.soils[sums.material].material.unit_weight / sums.conductivity[axis];
+}
+
 /// Writes the results of one node.
 template <class M>
 void store_node(State<M>& state, std::size_t i, const NodeSums<State<M>::dim>& sums, Real porosity,
@@ -437,6 +470,7 @@ void store_node(State<M>& state, std::size_t i, const NodeSums<State<M>::dim>& s
       flux[d] = porosity * after.liquid[d] + (1 - porosity) * after.solid[d];
       relative[d] = porosity * (after.liquid[d] - after.solid[d]);
       relative[4 + d] = sums.head_gradient[d];
+      if constexpr (has_skeleton<M>) flux[4 + d] = resistance(state, sums, d);
     }
     nodes.mixture[i] = flux;
     nodes.relative[i] = relative;
@@ -572,7 +606,7 @@ void advance_node(State<M>& state, const CellView<M>& view) {
       skeleton_volume = state.nodes.solid_in[i][lane::volume];
     else if constexpr (has_skeleton<M>)
       skeleton_volume = sums.soil_volume;
-    porosity = nodal_porosity(sums, skeleton_volume);
+    porosity = sums.porosity();
     for (int d = 0; d < dim; ++d) node.solid_force[d] += sums.skeleton_force[d];
     Real open[dim] = {};
     pressure_forces(sums, skeleton_volume, state.water.density, node, open);
@@ -583,7 +617,7 @@ void advance_node(State<M>& state, const CellView<M>& view) {
   if constexpr (has_liquid<M> && has_skeleton<M>) {
     Real prescribed[dim];
     find_prescribed(state, view.entry(), flags, prescribed);
-    advance_pair(state, sums, porosity, skeleton_volume, prescribed, node);
+    advance_pair(state, sums, prescribed, node);
   } else {
     for (int d = 0; d < dim; ++d) {
       if (node.solid_mass > 0) node.solid[d] += state.dt * node.solid_force[d] / node.solid_mass;
