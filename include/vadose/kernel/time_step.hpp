@@ -186,7 +186,9 @@ StableStep gravity_wave_step(const State<M>& state) {
   return step;
 }
 
-/// Largest step with implicit pressures: neither the compression of water nor the drag counts.
+/// Largest step with implicit pressures: neither the compression of water nor the drag counts. Where
+/// nothing limits the first step, in soil that does not move, it is the explicit one; the control of the
+/// error lets those that follow grow.
 template <class M>
 StableStep implicit_step(const State<M>& state) {
   StableStep step = skeleton_step(state);
@@ -195,6 +197,8 @@ StableStep implicit_step(const State<M>& state) {
   take_common_limits(state, step);
   if (state.system.next_dt > 0 && !state.frozen)
     step.take(state.system.next_dt, StepLimit::accuracy);
+  if (step.limit == StepLimit::none)
+    step.take(state.options.courant * wet_step(state).dt, StepLimit::accuracy);
   return step;
 }
 
