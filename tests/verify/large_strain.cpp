@@ -5,14 +5,13 @@
 #include "cases/large_strain.hpp"
 #include "check_case.hpp"
 
-// The bound of 1 % is missed. Soil in a surface cell less than half full moves with a node that holds
-// its load but neither the pressure nor the mean stress, which act on the cell below: it sinks faster
-// than it loses volume.
+// The bound of 1 % is missed by p in the cells next to the drained surface, where k falls by half within
+// a cell: the flow through the surface sees k of the cell. Settlement holds it.
 TEST_CASE("large strain: consolidation of slurry by the square law and by Kozeny and Carman's") {
   for (const bool square_law : {true, false}) {
     CAPTURE(square_law);
     const verify::LargeStrain slurry{.square_law = square_law, .times = {0.1, 0.2}};
-    verify::check_outcome(slurry, verify::run(slurry, {.cells = 10}), square_law ? 0.06 : 0.14);
+    verify::check_outcome(slurry, verify::run(slurry, {.cells = 10}), square_law ? 0.02 : 0.035);
   }
 }
 

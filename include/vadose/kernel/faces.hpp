@@ -71,6 +71,17 @@ Real gravity_head(const State<M>& state, int axis, Real distance) noexcept {
   return state.water.density * std::fabs(state.gravity[axis]) * distance;
 }
 
+/// Factor of the conductivity between two cells for their half ways in series, 2 k_a k_b / (k_a + k_b)
+/// of the saturated ones over that of the upstream cell: porosity has no upstream side. Unsaturated
+/// cells of two soils differ in more than that: there the upstream cell counts alone.
+template <int Dim>
+Real series_factor(const Cell<Dim>& a, const Cell<Dim>& b, const Cell<Dim>& up) noexcept {
+  const Real k_a = a.saturated_conductivity, k_b = b.saturated_conductivity;
+  const bool comparable = a.material == b.material || (a.pressure >= 0 && b.pressure >= 0);
+  if (k_a == k_b || !comparable) return 1;
+  return 2 * (&up == &a ? k_b : k_a) / (k_a + k_b);
+}
+
 /// Face between two soil cells with different pressures. The water moves as fast as the upstream
 /// saturation lets it, k H / (n S_up gamma), and there is as much of it as both cells hold in the mean:
 /// n (S_a + S_b) / 2. (With n S_up the fronts of rain run ahead: in cells of 0.1 m rms of S 0.0155 for
@@ -86,7 +97,8 @@ void inside_face(const State<M>& state, int axis, const Cell<State<M>::dim>& a,
   face.distance = distance;
   face.head_gradient = drop / distance;
   face.saturation = up.saturation;
-  face.conductivity = face_conductivity(state, up.material, up.conductivity, a.pressure, b.pressure,
+  face.conductivity = series_factor(a, b, up) *
+                      face_conductivity(state, up.material, up.conductivity, a.pressure, b.pressure,
                                         up.porosity, gravity_head(state, axis, distance));
   if (up.saturation > 0) face.conductivity *= 0.5 * (a.saturation + b.saturation) / up.saturation;
 }

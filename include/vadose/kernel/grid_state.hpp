@@ -129,6 +129,16 @@ struct FaceFlux {
   }
 };
 
+/// A node that only slivers touch, and the nodes of a cell that carry it.
+template <int Dim>
+struct CarriedNode {
+  static constexpr int corners = 1 << Dim;
+  std::int32_t entry = -1;            ///< of the node
+  std::int32_t owner = -1;            ///< the carrying cell; -1: the node is held from outside
+  std::int32_t corner[corners] = {};  ///< nodes of that cell
+  Real weight[corners] = {};          ///< their parts in its motion and its loads; they sum to 1
+};
+
 /// All arrays of the grid; one entry per cell or node of the existing blocks.
 template <int Dim>
 struct GridState {
@@ -150,6 +160,8 @@ struct GridState {
   std::vector<char> sought;       ///< scratch: retry before a pass
   std::vector<std::int32_t> dof;  ///< entry of the cell whose pressure a cell uses, -1: none
   std::vector<FaceFlux> face;     ///< Dim per cell
+  std::vector<char> has_slivers;  ///< blocks with slivers of soil, one per slot
+  std::vector<CarriedNode<Dim>> carried;  ///< in ascending order, once per carrying cell
   std::vector<std::uint16_t> node_flags;  ///< walls and prescribed motion, see NodeFlag
 };
 

@@ -14,6 +14,8 @@ struct Philip {
   static constexpr Real length = 2, pressure = -2e4;
 
   Real speed_up = 10;  ///< of k_sat and so of time
+  /// Of the conductivity: Philip's solution has none. The default, 1e-3, straightens k_r below 49 Pa.
+  Real linear_below = 0;
   std::vector<Real> times = {25, 50, 100};
   std::vector<Resolution> resolutions = {{20}, {40}, {80}};
 
@@ -32,7 +34,8 @@ struct Philip {
         .lambda = table1::lambda,
         .retention = {.a = table1::a, .porosity_dependent = false},
         .conductivity = {.saturated_conductivity = speed_up * table1::conductivity,
-                         .porosity_dependent = false}};
+                         .porosity_dependent = false,
+                         .linear_below = linear_below}};
     scene.add_soil(vadose::box(Vec<1>(0.0), Vec<1>(length)), soil,
                    {.liquid_pressure = [](const Vec<1>&) { return pressure; }});
     scene.add(vadose::bc::PrescribedPressure<1>{.face = vadose::Face::bottom, .pressure = 0});

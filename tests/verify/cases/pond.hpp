@@ -89,9 +89,14 @@ struct Pond {
           table.number(i, "t_s") == time)
         rows.emplace_back(table.number(i, "z_m"), table.number(i, "Sr"));
     Comparison content{"saturation", time};
+    const Real half = 0.5 * run.state().grid.cell_size();
     for_cells(run, vadose::CellKind::soil, [&](const auto& cell) {
       const Real z = cell.centroid[0];
-      content.add(z, cell.saturation, linear(rows, std::min(z, rows.back().first)));
+      Norm mean;  // of the reference over the cell
+      for (int i = -4; i <= 4; ++i)
+        mean.add(
+            linear(rows, std::clamp(z + half * i / 4.5, rows.front().first, rows.back().first)));
+      content.add(z, cell.saturation, mean.mean());
     });
     return {content};
   }

@@ -4,6 +4,7 @@
 /// \file
 /// The order of a step, [Zhan] 3.4. Kernels know their task; only this file knows the order.
 
+#include <vadose/kernel/carried_nodes.hpp>
 #include <vadose/kernel/exchange.hpp>
 #include <vadose/kernel/time_step.hpp>
 #include <vadose/kernel/update_points.hpp>
@@ -40,10 +41,12 @@ kernel::StableStep Explicit::step(State<M>& state, Real dt_limit) {
   if constexpr (is_deformable<M>) {
     kernel::map_solid(state);  // (a) solid to nodes
     kernel::map_loads(state);  //     traction
+    if constexpr (has_liquid<M>) kernel::unload_carried_nodes(state);
   }
   kernel::advance_nodes(state);  // (b), (d), (e): porosity, forces, drag, walls, velocities
   if constexpr (has_liquid<M>) kernel::exchange_water(state);  // fluxes and gains of cells
   if constexpr (is_deformable<M>) {
+    if constexpr (has_liquid<M>) kernel::move_carried_nodes(state);
     kernel::move_loads(state);
     kernel::update_solid(state);  // (f), (h): positions, stress, volume
   }

@@ -34,11 +34,13 @@ struct SemiImplicit {
       if constexpr (is_deformable<M>) {
         kernel::map_solid(state);  // (a) solid to nodes
         kernel::map_loads(state);  //     traction
+        kernel::unload_carried_nodes(state);
       }
       while (!predict_and_solve(state, stable)) kernel::begin_step(state, stable.dt);
       if (state.sums[0].failed) return stable;
       book(state);
       if constexpr (is_deformable<M>) {
+        kernel::move_carried_nodes(state);
         kernel::move_loads(state);
         kernel::update_solid(state);  // (f), (h): positions, stress, volume
       }
