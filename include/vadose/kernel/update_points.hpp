@@ -85,8 +85,7 @@ template <bool Slopes, class Shape, int Dim>
 VADOSE_INLINE void interpolate(const Stencil<Shape, Dim>& stencil, const Record* tile,
                                PointMotion<Dim>& motion) noexcept {
   Gather<Slopes, Shape, Dim> gather;
-  gather.sum(stencil, tile);
-  gather.by_field();
+  gather.sum_vectors(stencil, tile);
   for (int a = 0; a < Dim; ++a) {
     motion.velocity[a] = gather.value[lane::velocity + a];
     motion.increment[a] = gather.value[lane::increment + a];
@@ -287,7 +286,7 @@ template <class M, bool RateByCell = has_liquid<M>>
 void update_solid(State<M>& state) {
   constexpr int dim = State<M>::dim;
   for_blocks(state.solid, state.options.threads, [&](const BatchRange& range, int thread) {
-    Tile<dim>& tile = state.tile(thread);
+    Tile<dim>& tile = state.tile(thread, 2);
     tile.read(state.grid, range.slot, state.nodes.solid_out);
     const TileFrame<dim> frame = tile_frame(state.grid, range.slot);
     const std::int32_t* entries = state.grid.tile(range.slot);
@@ -296,7 +295,6 @@ void update_solid(State<M>& state) {
       state.solid.prefetch(b + 2);
       update_solid_batch<RateByCell>(state, b, frame, entries, tile.record, sums);
     }
-    for (auto& r : tile.record) r = Record{};
   });
 }
 
@@ -527,8 +525,8 @@ template <class M>
 void update_liquid(State<M>& state) {
   constexpr int dim = State<M>::dim;
   for_blocks(state.liquid, state.options.threads, [&](const BatchRange& range, int thread) {
-    Tile<dim>& liquid = state.tile(thread, 0);
-    Tile<dim>& solid = state.tile(thread, 1);
+    Tile<dim>& liquid = state.tile(thread, 2);
+    Tile<dim>& solid = state.tile(thread, 3);
     liquid.read(state.grid, range.slot, state.nodes.liquid_out);
     if constexpr (is_deformable<M>) solid.read(state.grid, range.slot, state.nodes.solid_out);
     const TileFrame<dim> frame = tile_frame(state.grid, range.slot);
@@ -538,8 +536,6 @@ void update_liquid(State<M>& state) {
       state.liquid.prefetch(b + 2);
       update_liquid_batch(state, b, range.slot, frame, entries, liquid.record, solid.record, sums);
     }
-    for (auto& r : liquid.record) r = Record{};
-    for (auto& r : solid.record) r = Record{};
   });
 }
 
