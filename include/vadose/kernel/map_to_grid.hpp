@@ -63,7 +63,7 @@ VADOSE_INLINE SymTensor<Lanes, State<M>::stress_size> load_stress(const State<M>
 }
 
 /// Adds one batch of solid points to a tile of nodes. With MeanByCell the mean stress goes to the
-/// cells instead, where it meets the liquid pressure: see add_cell().
+/// cells instead, where it meets the liquid pressure: see prepare_cell().
 template <bool MeanByCell, class M>
 VADOSE_INLINE void map_solid_batch(const State<M>& state, std::size_t b,
                                    const TileFrame<State<M>::dim>& frame, Record* tile,
@@ -166,6 +166,7 @@ VADOSE_INLINE void into_pressure_cell(const State<M>& state, const CellFinder<St
                                       const std::int32_t* entries, int slot,
                                       Lanes (&x)[State<M>::dim]) noexcept {
   constexpr int dim = State<M>::dim;
+  if (!state.nodes.near_sliver[static_cast<std::size_t>(slot)]) return;
   const Real h = state.grid.cell_size();
   for (int l = 0; l < lane_count; ++l) {
     const std::int32_t e = entries[cells.index[l]];

@@ -368,6 +368,9 @@ class Solver {
       n.cell.assign(size, {});
       n.dof.assign(size, -1);
       n.face.assign(size * dim, {});
+      n.head.assign(size, 0);
+      n.rate.assign(size, unset);
+      n.near_sliver.assign(static_cast<std::size_t>(state_.grid.slots()), 1);
       n.retry.assign(static_cast<std::size_t>(state_.grid.slots()), 0);
     }
   }
