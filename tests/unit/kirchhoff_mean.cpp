@@ -98,6 +98,22 @@ const Soil silty_sand = soil(1.2, 0.89, 0.48, 2.77e-3);   // Table 3
 
 }  // namespace
 
+TEST_CASE("mean conductivity: eight faces at once as one by one") {
+  const swrc::Tarantino curve{.a = 1.5, .lambda = 0.25, .unit_weight = 9810};
+  const conductivity::Mualem law{
+      .saturated_conductivity = 1e-5, .reference_porosity = 0.4, .lambda = 0.25};
+  const KirchhoffMean<swrc::Tarantino, conductivity::Mualem> mean(curve, law, 0.4);
+  const Real pressures[] = {2e3, 0, -1e-4, -30, -30.0001, -4e3, -2e5, -1e8, -1e13};
+  for (const Real a : pressures)
+    for (const Real n : {0.2, 0.4, 0.6}) {
+      Lanes b, porosity(n);
+      for (int l = 0; l < vadose::lane_count; ++l) b.set(l, pressures[l + (l % 2)]);
+      const Lanes together = mean.mean(Lanes(a), b, porosity);
+      for (int l = 0; l < vadose::lane_count; ++l)
+        CHECK(together[l] == Approx(mean.mean(a, b[l], n)).epsilon(1e-11));
+    }
+}
+
 TEST_CASE("kirchhoff: means agree with adaptive quadrature for the paper's soils") {
   const auto kink = [](const Soil& s, Real n) { return 1e-3 / s.curve.suction_scale(n); };
   CHECK(worst_error(clay.curve, clay.law, 0.4, 0.4, kink(clay, 0.4)) <= 1e-6);

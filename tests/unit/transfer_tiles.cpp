@@ -14,7 +14,7 @@ using vadose::BlockGrid;
 using vadose::Record;
 using vadose::kernel::Tile;
 
-/// Eight random points of one block of a small box, some at its walls.
+/// Eight random points of one block of a small box, some at its walls; or close together.
 template <class Basis, int Dim>
 struct Batch {
   BlockGrid<Dim> grid;
@@ -22,7 +22,7 @@ struct Batch {
   std::array<Vec<Dim>, 8> x, half;
   vadose::kernel::Stencil<typename Basis::policy, Dim> stencil;
 
-  explicit Batch(Random& random) {
+  explicit Batch(Random& random, bool together = false) {
     Vec<Dim> origin;
     Index<Dim> cells;
     for (int d = 0; d < Dim; ++d) {
@@ -38,7 +38,7 @@ struct Batch {
         const int low = grid.first_cell(slot)[d];
         const int high = std::min(low + Block<Dim>::edge, cells[d]);
         const Real u = random.in(std::max(0.0, low - 0.4), std::min<Real>(high + 0.4, cells[d]));
-        x[p][d] = origin[d] + u * h;
+        x[p][d] = together && p > 0 ? x[0][d] + random.in(-1e-3, 1e-3) * h : origin[d] + u * h;
         half[p][d] = h * random.in(0.1, 0.5);
         lanes[d].set(static_cast<int>(p), x[p][d]);
         half_lanes[d].set(static_cast<int>(p), half[p][d]);
@@ -150,8 +150,79 @@ Real gather_error(unsigned seed) {
   return worst;
 }
 
+/// Against the general scatter, of the largest number.
+template <class Basis, int Dim>
+Real force_scatter_error(unsigned seed) {
+  Random random(seed);
+  Real worst = 0, most = 0;
+  for (int trial = 0; trial < 20; ++trial) {
+    const Batch<Basis, Dim> batch(random);
+    vadose::kernel::Scatter<true, false, typename Basis::policy, Dim> general;
+    vadose::kernel::ForceScatter<typename Basis::policy, Dim> scatter;
+    const auto draw = [&] {
+      Lanes v;
+      for (int p = 0; p < lane_count; ++p) v.set(p, random.in(-1, 1));
+      return v;
+    };
+    Lanes value[5], force[Dim][Dim];
+    for (auto& v : value) v = draw();
+    for (auto& v : general.value) v = Lanes(0.0);
+    for (int i = 0; i < 5; ++i) general.value[i < 4 ? i : vadose::lane::volume] = value[i];
+    vadose::transpose(general.value);
+    for (int e = 0; e < Dim; ++e) {
+      for (auto& v : general.slope[e]) v = Lanes(0.0);
+      for (int d = 0; d < Dim; ++d)
+        general.slope[e][vadose::lane::force + d] = force[e][d] = draw();
+      vadose::transpose(general.slope[e]);
+    }
+    scatter.set(value, force);
+    std::vector<Tile<Dim>> tile(2);
+    general.add(batch.stencil, tile[0].record);
+    scatter.add(batch.stencil, tile[1].record);
+    for (std::size_t i = 0; i < std::size_t{Block<Dim>::tile_size}; ++i)
+      for (int r = 0; r < 8; ++r) {
+        most = std::max(most, std::fabs(tile[0].record[i][r]));
+        worst = std::max(worst, std::fabs(tile[0].record[i][r] - tile[1].record[i][r]));
+      }
+  }
+  return worst / most;
+}
+
+/// Points that share their nodes against each by itself.
+template <class Basis, int Dim>
+Real shared_gather_error(unsigned seed) {
+  Random random(seed);
+  Real worst = 0, most = 0;
+  int shared = 0;
+  for (int trial = 0; trial < 40; ++trial) {
+    const Batch<Basis, Dim> batch(random, true);
+    shared += batch.stencil.shared;
+    std::vector<Tile<Dim>> tile(1);
+    for (auto& r : tile[0].record)
+      for (double& v : r.value) v = random.in(-1, 1);
+    vadose::kernel::Gather<true, typename Basis::policy, Dim> each, together;
+    each.sum(batch.stencil, tile[0].record);
+    each.by_field();
+    together.sum_vectors(batch.stencil, tile[0].record);
+    for (int p = 0; p < lane_count; ++p)
+      for (int d = 0; d < Dim; ++d) {
+        const auto compare = [&](const Lanes& a, const Lanes& b) {
+          most = std::max(most, std::fabs(a[p]));
+          worst = std::max(worst, std::fabs(a[p] - b[p]));
+        };
+        compare(each.value[d], together.value[d]);
+        compare(each.value[4 + d], together.value[4 + d]);
+        for (int e = 0; e < Dim; ++e) compare(each.slope[e][d], together.slope[e][d]);
+      }
+  }
+  CHECK(shared > 20);
+  return worst / most;
+}
+
 template <class Basis, int Dim>
 void check_transfers() {
+  CHECK(force_scatter_error<Basis, Dim>(48) < 1e-14);
+  CHECK(shared_gather_error<Basis, Dim>(49) < 1e-14);
   CHECK(scatter_error<false, false, Basis, Dim>(41) < 1e-13);
   CHECK(scatter_error<true, false, Basis, Dim>(42) < 1e-13);
   CHECK(scatter_error<false, true, Basis, Dim>(43) < 1e-13);

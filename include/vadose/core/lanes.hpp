@@ -47,6 +47,22 @@ inline constexpr int native_parts = lane_count / native_width;
 
 typedef double NativeVector __attribute__((vector_size(8 * native_width)));
 typedef long long NativeMask __attribute__((vector_size(8 * native_width)));
+typedef int NativeInts __attribute__((vector_size(4 * native_width)));
+
+/// Whether any element of a mask (all bits of it or none) is set.
+VADOSE_INLINE bool is_any_set(NativeMask mask) noexcept {
+#if defined(__AVX512F__)
+  return _mm512_test_epi64_mask(static_cast<__m512i>(mask), static_cast<__m512i>(mask)) != 0;
+#elif defined(__AVX__)
+  return __builtin_ia32_movmskpd256(reinterpret_cast<NativeVector>(mask)) != 0;
+#elif defined(__SSE2__)
+  return __builtin_ia32_movmskpd(reinterpret_cast<NativeVector>(mask)) != 0;
+#else
+  long long bits = 0;
+  for (int l = 0; l < native_width; ++l) bits |= mask[l];
+  return bits != 0;
+#endif
+}
 
 }  // namespace detail
 
@@ -73,9 +89,7 @@ struct LaneMask {
   VADOSE_INLINE friend bool any(const LaneMask& mask) noexcept {
     detail::NativeMask joined = mask.part[0];
     for (int i = 1; i < detail::native_parts; ++i) joined = joined | mask.part[i];
-    long long bits = 0;
-    for (int l = 0; l < detail::native_width; ++l) bits |= joined[l];
-    return bits != 0;
+    return detail::is_any_set(joined);
   }
   /// True in all lanes.
   VADOSE_INLINE friend bool all(const LaneMask& mask) noexcept { return !any(!mask); }
@@ -197,6 +211,13 @@ struct Lanes {
     return r;
   }
 
+  /// Writes the lanes as integers, rounded towards zero; p is 32-byte aligned.
+  VADOSE_INLINE void store_integers(int* p) const noexcept {
+    for (int i = 0; i < detail::native_parts; ++i)
+      *reinterpret_cast<detail::NativeInts*>(p + i * detail::native_width) =
+          __builtin_convertvector(part[i], detail::NativeInts);
+  }
+
   /// Sum over the lanes, from the first to the last.
   VADOSE_INLINE friend double sum(const Lanes& a) noexcept {
     double s = 0;
@@ -205,9 +226,22 @@ struct Lanes {
   }
   /// Largest lane.
   VADOSE_INLINE friend double max_lane(const Lanes& a) noexcept {
-    double m = a[0];
-    for (int l = 1; l < lane_count; ++l) m = a[l] > m ? a[l] : m;
+#if defined(__AVX512F__)
+    const auto larger = [](detail::NativeVector u, detail::NativeVector v) {
+      return u > v ? u : v;
+    };
+    detail::NativeVector m = a.part[0];
+    m = larger(m, __builtin_shufflevector(m, m, 4, 5, 6, 7, 0, 1, 2, 3));
+    m = larger(m, __builtin_shufflevector(m, m, 2, 3, 0, 1, 6, 7, 4, 5));
+    m = larger(m, __builtin_shufflevector(m, m, 1, 0, 3, 2, 5, 4, 7, 6));
+    return m[0];
+#else
+    detail::NativeVector joined = a.part[0];
+    for (int i = 1; i < detail::native_parts; ++i) joined = a.part[i] > joined ? a.part[i] : joined;
+    double m = joined[0];
+    for (int l = 1; l < detail::native_width; ++l) m = joined[l] > m ? joined[l] : m;
     return m;
+#endif
   }
   /// Smallest lane.
   VADOSE_INLINE friend double min_lane(const Lanes& a) noexcept {

@@ -4,6 +4,7 @@
 /// \file
 /// Storage of one set of points: batches of eight, sorted by grid block.
 
+#include <array>
 #include <cstdint>
 #include <span>
 #include <utility>
@@ -21,6 +22,12 @@ struct BatchRange {
   int slot = 0;           ///< the block
   std::size_t begin = 0;  ///< first batch
   std::size_t end = 0;    ///< one past the last batch
+};
+
+/// What points of a block and group are sorted by.
+enum class SortBy : unsigned char {
+  cell,  ///< the cell they are in
+  node,  ///< the node nearest to them
 };
 
 /// One set of points (solid or liquid). A batch holds eight points, one cache line per field
@@ -147,8 +154,10 @@ class PointSet {
     });
   }
 
-  /// Sorts by block, group and cell; new points join, removed ones vanish.
-  void sort(const BlockGrid<Dim>& grid, int groups) {
+  /// Sorts by block and group, then by cell or, for bases of three nodes per axis, by the middle node,
+  /// so that many batches share their nodes; new points join, removed ones vanish.
+  void sort(const BlockGrid<Dim>& grid, int groups, SortBy by = SortBy::cell) {
+    by_ = by;
     const std::vector<std::size_t> start = count(grid, groups);
     AlignedVector<double> sorted(batch_total(start, groups, grid.slots()) *
                                  static_cast<std::size_t>(stride));
@@ -177,30 +186,57 @@ class PointSet {
     for (int d = 0; d < Dim; ++d) c[d] = grid.cell_of(p[(x + d) * step], d);
     return c;
   }
-  static std::size_t key(const BlockGrid<Dim>& grid, const double* p, int step, int group,
-                         int groups) noexcept {
+  /// Number of keys of one block and group.
+  std::size_t keys() const noexcept {
+    return by_ == SortBy::cell ? std::size_t{B::cells} : ranks_.size();
+  }
+  std::size_t key(const BlockGrid<Dim>& grid, const double* p, int step, int group,
+                  int groups) const noexcept {
+    constexpr int x = Fields::template offset<field::Position>();
     const Index<Dim> c = cell_of(grid, p, step);
+    const int slot = grid.slot(grid.block_number(c));
+    const std::size_t range = static_cast<std::size_t>(slot * groups + group);
     Index<Dim> local;
     for (int d = 0; d < Dim; ++d) local[d] = c[d] % B::edge;
-    const int slot = grid.slot(grid.block_number(c));
-    return static_cast<std::size_t>((slot * groups + group) * B::cells +
-                                    BlockGrid<Dim>::local_index(local));
+    if (by_ == SortBy::cell)
+      return range * B::cells + static_cast<std::size_t>(BlockGrid<Dim>::local_index(local));
+    std::size_t node = 0;
+    for (int d = Dim - 1; d >= 0; --d) {
+      const Real u = (p[(x + d) * step] - grid.origin()[d]) / grid.cell_size() - c[d];
+      node = node * (B::edge + 1) + static_cast<std::size_t>(local[d] + (u >= 0.5 ? 1 : 0));
+    }
+    return range * ranks_.size() + ranks_[node];
   }
+  /// Ranks of the nodes of a block: those inside come first, since all points near them are in the
+  /// block; where these fill whole batches, they stay so.
+  static constexpr auto rank_nodes() {
+    constexpr int edge = B::edge + 1;
+    std::array<std::uint8_t, power<Dim>(static_cast<std::size_t>(edge))> rank{};
+    std::uint8_t next = 0;
+    for (int sides = 0; sides <= Dim; ++sides)
+      for (std::size_t n = 0; n < rank.size(); ++n) {
+        int rest = static_cast<int>(n), on = 0;
+        for (int d = 0; d < Dim; ++d, rest /= edge)
+          on += rest % edge == 0 || rest % edge == edge - 1 ? 1 : 0;
+        if (on == sides) rank[n] = next++;
+      }
+    return rank;
+  }
+  static constexpr auto ranks_ = rank_nodes();
 
-  /// Number of points before each key (block, group, cell), and in all.
+  /// Number of points before each key (block, group, place in the block), and in all.
   std::vector<std::size_t> count(const BlockGrid<Dim>& grid, int groups) const {
-    std::vector<std::size_t> start(static_cast<std::size_t>(grid.slots() * groups * B::cells) + 1,
-                                   0);
+    std::vector<std::size_t> start(static_cast<std::size_t>(grid.slots() * groups) * keys() + 1, 0);
     for_each_value([&](const double* p, int step, int group) {
       ++start[key(grid, p, step, group, groups) + 1];
     });
     for (std::size_t k = 1; k < start.size(); ++k) start[k] += start[k - 1];
     return start;
   }
-  static std::size_t batches_of(const std::vector<std::size_t>& start, std::size_t range) {
-    return (start[(range + 1) * B::cells] - start[range * B::cells] + lane_count - 1) / lane_count;
+  std::size_t batches_of(const std::vector<std::size_t>& start, std::size_t range) const {
+    return (start[(range + 1) * keys()] - start[range * keys()] + lane_count - 1) / lane_count;
   }
-  static std::size_t batch_total(const std::vector<std::size_t>& start, int groups, int slots) {
+  std::size_t batch_total(const std::vector<std::size_t>& start, int groups, int slots) const {
     std::size_t total = 0;
     for (std::size_t r = 0; r < static_cast<std::size_t>(slots * groups); ++r)
       total += batches_of(start, r);
@@ -216,8 +252,8 @@ class PointSet {
     std::vector<std::size_t> next = start;
     for_each_value([&](const double* p, int step, int group) {
       const std::size_t k = key(grid, p, step, group, groups);
-      const std::size_t range = k / B::cells;
-      const std::size_t n = next[k]++ - start[range * B::cells];
+      const std::size_t range = k / keys();
+      const std::size_t n = next[k]++ - start[range * keys()];
       double* to = sorted.data() + (first_batch[range] + n / lane_count) * stride + n % lane_count;
       for (int c = 0; c < Fields::total; ++c) to[c * lane_count] = p[c * step];
     });
@@ -228,7 +264,7 @@ class PointSet {
       const std::size_t r0 = static_cast<std::size_t>(s * groups);
       const std::size_t r1 = r0 + static_cast<std::size_t>(groups);
       for (std::size_t r = r0; r < r1; ++r) {
-        const std::size_t n = start[(r + 1) * B::cells] - start[r * B::cells];
+        const std::size_t n = start[(r + 1) * keys()] - start[r * keys()];
         for (std::size_t b = first_batch[r]; b < first_batch[r + 1]; ++b)
           group_[b] = static_cast<std::uint8_t>(r - r0);
         if (n > 0) pad(sorted, first_batch[r + 1] - 1, static_cast<int>((n - 1) % lane_count) + 1);
@@ -266,6 +302,7 @@ class PointSet {
   std::vector<std::size_t> layers_{0};
   std::vector<int> layer_coordinates_;
   std::size_t size_ = 0;
+  SortBy by_ = SortBy::cell;
   std::vector<double> new_values_;
   std::vector<std::uint8_t> new_groups_;
 };

@@ -30,7 +30,7 @@ VADOSE_INLINE void load_half_sizes(const Points& points, std::size_t batch,
 /// Tile index of the cell of each of eight points; cells beyond a wall count as the last inside.
 template <int Dim>
 struct CellFinder {
-  int index[lane_count];
+  alignas(32) int index[lane_count];
 
   VADOSE_INLINE void find(const TileFrame<Dim>& frame, const Lanes (&x)[Dim]) noexcept {
     Lanes at(0.0);
@@ -42,7 +42,7 @@ struct CellFinder {
       at += min(select(u > low, u, low), high) * Lanes(stride);
       stride *= Block<Dim>::tile_edge;
     }
-    for (int l = 0; l < lane_count; ++l) index[l] = static_cast<int>(at[l]);
+    at.store_integers(index);
   }
 };
 

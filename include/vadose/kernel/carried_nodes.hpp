@@ -105,18 +105,13 @@ template <class M>
 void find_carried_nodes(State<M>& state) {
   constexpr int dim = State<M>::dim;
   auto& nodes = state.nodes;
-  nodes.has_slivers.assign(static_cast<std::size_t>(state.grid.slots()), 0);
   const auto is_sliver = [&](std::int32_t e) {
     const auto i = static_cast<std::size_t>(e);
     return nodes.dof[i] >= 0 && nodes.dof[i] != e && nodes.cell[i].kind == CellKind::soil;
   };
-  for_cells(state.grid, state.options.threads,
-            [&](std::int32_t e, const Index<dim>&, int slot, int) {
-              if (is_sliver(e)) nodes.has_slivers[static_cast<std::size_t>(slot)] = 1;
-            });
   nodes.carried.clear();
   for (int slot = 0; slot < state.grid.slots(); ++slot) {
-    if (!nodes.has_slivers[static_cast<std::size_t>(slot)]) continue;
+    if (!nodes.near_sliver[static_cast<std::size_t>(slot)]) continue;
     for_cube<dim>(0, Block<dim>::edge, [&](const Index<dim>& local) {
       const CellView<M> view(state, local, slot);
       if (is_sliver(view.entry())) list_carried(state, view);

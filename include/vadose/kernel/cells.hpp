@@ -29,14 +29,21 @@ void for_cells(const BlockGrid<Dim>& grid, int threads, F&& f) {
   });
 }
 
-/// Adds one record per point to the cell the point is in.
+/// Adds one record per point to the cell the point is in. Points of one cell lie together as a rule:
+/// what they bring is summed before it goes to the cell.
 template <int Dim>
 VADOSE_INLINE void add_to_cells(const CellFinder<Dim>& cells, Lanes (&record)[lane_count],
                                 Tile<Dim>& tile) noexcept {
   transpose(record);
-  for (int l = 0; l < lane_count; ++l) {
-    double* r = tile.record[cells.index[l]].value;
-    (Lanes::load(r) + record[l]).store(r);
+  Lanes sum = record[0];
+  for (int l = 1; l <= lane_count; ++l) {
+    if (l < lane_count && cells.index[l] == cells.index[l - 1]) {
+      sum += record[l];
+      continue;
+    }
+    double* r = tile.record[cells.index[l - 1]].value;
+    (Lanes::load(r) + sum).store(r);
+    if (l < lane_count) sum = record[l];
   }
 }
 
@@ -254,17 +261,37 @@ std::int32_t sliver_target(const CellView<M>& view) noexcept {
   return target;
 }
 
+/// Marks the neighbours of marked blocks too; one entry per slot.
+template <int Dim>
+void widen_marks(const BlockGrid<Dim>& grid, const std::vector<char>& own,
+                 std::vector<char>& marks) {
+  for (int s = 0; s < grid.slots(); ++s) {
+    if (!own[static_cast<std::size_t>(s)]) continue;
+    for_cube<Dim>(-1, 2, [&](const Index<Dim>& step) {
+      Index<Dim> c = grid.first_cell(s);
+      for (int d = 0; d < Dim; ++d) c[d] += step[d] * Block<Dim>::edge;
+      const std::int32_t e = grid.entry(c);
+      if (e != grid.outside()) marks[static_cast<std::size_t>(e / Block<Dim>::cells)] = 1;
+    });
+  }
+}
+
 /// Which cell's pressure each cell uses.
 template <class M>
 void assign_pressure_cells(State<M>& state) {
+  auto& nodes = state.nodes;
+  nodes.sought.assign(static_cast<std::size_t>(state.grid.slots()), 0);
   for_cells(state.grid, state.options.threads,
             [&](std::int32_t e, const Index<State<M>::dim>& local, int slot, int) {
               const auto i = static_cast<std::size_t>(e);
-              state.nodes.dof[i] = -1;
-              if (state.nodes.cell[i].kind == CellKind::none) return;
+              nodes.dof[i] = -1;
+              if (nodes.cell[i].kind == CellKind::none) return;
               const std::int32_t target = sliver_target(CellView<M>(state, local, slot));
-              state.nodes.dof[i] = target < 0 ? e : target;
+              nodes.dof[i] = target < 0 ? e : target;
+              if (target >= 0) nodes.sought[static_cast<std::size_t>(slot)] = 1;
             });
+  nodes.near_sliver = nodes.sought;
+  widen_marks(state.grid, nodes.sought, nodes.near_sliver);
 }
 
 /// Calls f(entry, step) for a cell itself and every sliver around that shares its pressure.
@@ -358,7 +385,7 @@ void gather_cell(State<M>& state, const CellView<M>& view) {
   Real fill = 0, wet = 0;
   bool at_air = false;
   int members = 0;
-  scan_members(view, [&](std::int32_t m, const Index<dim>&) {
+  const auto add = [&](std::int32_t m, const Index<dim>&) {
     const auto i = static_cast<std::size_t>(m);
     (Lanes::load(pore.value) + Lanes::load(nodes.pore[i].value)).store(pore.value);
     (Lanes::load(free.value) + Lanes::load(nodes.free[i].value)).store(free.value);
@@ -367,7 +394,11 @@ void gather_cell(State<M>& state, const CellView<M>& view) {
     wet += wet_volume(nodes, m);
     fill += nodes.cell[i].raw_fill;
     ++members;
-  });
+  };
+  if (nodes.near_sliver[static_cast<std::size_t>(view.slot)])
+    scan_members(view, add);
+  else
+    add(view.entry(), Index<dim>{});
   for (int d = 0; d < dim; ++d)
     for (int step = -1; step <= 1; step += 2)
       if (view.has_neighbour(d, step)) {

@@ -181,25 +181,28 @@ void for_inflows(const State<M>& state, const CellView<M>& view, F&& f) {
     const std::int32_t owner = nodes.dof[static_cast<std::size_t>(e)];
     return owner < 0 ? nullptr : &nodes.cell[static_cast<std::size_t>(owner)];
   };
-  const auto visit = [&](const Index<dim>& cell) {
-    const std::int32_t e = state.grid.entry(cell);
-    for (int d = 0; d < dim; ++d) {
-      Index<dim> below = cell, above = cell;
-      --below[d];
-      ++above[d];
-      const std::int32_t ea = state.grid.entry(above);
-      const FaceFlux& low =
-          nodes.face[static_cast<std::size_t>(e) * dim + static_cast<std::size_t>(d)];
-      const FaceFlux& high =
-          nodes.face[static_cast<std::size_t>(ea) * dim + static_cast<std::size_t>(d)];
-      if (low.flux != 0) f(Inflow<dim>{low.flux, other(state.grid.entry(below)), &low});
-      if (high.flux != 0) f(Inflow<dim>{-high.flux, other(ea), &high});
-    }
+  const auto face = [&](std::int32_t e, int axis) -> const FaceFlux& {
+    return nodes.face[static_cast<std::size_t>(e) * dim + static_cast<std::size_t>(axis)];
   };
-  for_members(view, [&](std::int32_t, const Index<dim>& step) {
-    Index<dim> cell = view.cell;
-    for (int d = 0; d < dim; ++d) cell[d] += step[d];
-    visit(cell);
+  const auto visit = [&](std::int32_t e, std::int32_t below, std::int32_t above, int axis) {
+    const FaceFlux& low = face(e, axis);
+    const FaceFlux& high = face(above, axis);
+    if (low.flux != 0) f(Inflow<dim>{low.flux, other(below), &low});
+    if (high.flux != 0) f(Inflow<dim>{-high.flux, other(above), &high});
+  };
+  for_members(view, [&](std::int32_t e, const Index<dim>& step) {
+    if (e == view.entry()) {
+      for (int d = 0; d < dim; ++d) visit(e, view.neighbour(d, -1), view.neighbour(d, 1), d);
+      return;
+    }
+    for (int d = 0; d < dim; ++d) {  // a sliver may lie at the rim of the tile
+      Index<dim> below = view.cell, above = view.cell;
+      for (int a = 0; a < dim; ++a) {
+        below[a] += step[a] - (a == d ? 1 : 0);
+        above[a] += step[a] + (a == d ? 1 : 0);
+      }
+      visit(e, state.grid.entry(below), state.grid.entry(above), d);
+    }
   });
 }
 

@@ -8,36 +8,73 @@
 
 namespace vadose::kernel {
 
-/// Saturation that belongs to the pressure of a cell, which its mean saturation does not quite: the
-/// pressure varies over the cell, and near S = 1 a 1e-5 of S is 15 % of a clay's conductivity. Cells
-/// too dry for their pressure to say so count by their water.
+/// Eight soil cells of one material, whose conductivities are found together.
 template <class M>
-Real saturation_at_pressure(const Material<M>& material, Real floor,
-                            const Cell<State<M>::dim>& cell) noexcept {
-  if (cell.pressure >= 0) return 1;
-  if (!(cell.pressure > floor)) return cell.saturation;
-  return swrc::saturation_and_slope<Real>(material.retention, -cell.pressure, cell.porosity)
-      .saturation;
+struct CellBatch {
+  int count = 0;
+  std::uint8_t material = 0;
+  Cell<State<M>::dim>* cell[lane_count];
+
+  /// One number of each cell; that of the first where there are fewer.
+  template <class F>
+  Lanes numbers(F&& f) const noexcept {
+    alignas(64) double values[lane_count];
+    for (int l = 0; l < lane_count; ++l) values[l] = f(*cell[l < count ? l : 0]);
+    return Lanes::load(values);
+  }
+};
+
+/// Conductivities of up to eight soil cells at their own pressure and at S = 1.
+template <class M>
+void find_conductivities(const State<M>& state, CellBatch<M>& batch) {
+  using C = Cell<State<M>::dim>;
+  if (batch.count == 0) return;
+  const auto& soil = state.soils[batch.material];
+  const auto& material = soil.material;
+  const Lanes one(1.0), zero(0.0);
+  const Lanes saturated = conductivity::value<Lanes>(
+      material.conductivity, one, batch.numbers([](const C& c) { return c.soil_porosity; }));
+  Lanes conductivity = saturated;
+  if constexpr (is_unsaturated<M>) {
+    const Lanes p = batch.numbers([](const C& c) { return c.pressure; });
+    const Lanes n = batch.numbers([](const C& c) { return c.porosity; });
+    const Lanes on_curve =
+        swrc::saturation_and_slope<Lanes>(material.retention, max(-p, zero), n).saturation;
+    const Lanes in_cell = batch.numbers([](const C& c) { return c.saturation; });
+    const Lanes s = select(p > Lanes(soil.pressure_floor), on_curve, in_cell);
+    const Lanes own = conductivity::value<Lanes>(
+        material.conductivity, swrc::effective_saturation<Lanes>(material.retention, s), n);
+    conductivity = select((p < zero) & (s < one), own, saturated);
+  }
+  for (int l = 0; l < batch.count; ++l) {
+    batch.cell[l]->saturated_conductivity = saturated[l];
+    batch.cell[l]->conductivity = conductivity[l];
+  }
+  batch.count = 0;
 }
 
-/// Conductivities of every soil cell at its own pressure and at S = 1.
+/// Conductivities of every soil cell. The saturation is the one that belongs to the pressure of a
+/// cell, which its mean saturation does not quite: the pressure varies over the cell, and near S = 1 a
+/// 1e-5 of S is 15 % of a clay's conductivity. Cells too dry for their pressure to say so count by
+/// their water.
 template <class M>
 void find_conductivities(State<M>& state) {
-  for_pressure_cells(state, [&](Cell<State<M>::dim>& cell, std::int32_t, int) {
-    if (!(cell.soil_share > 0)) return;
-    const auto& soil = state.soils[cell.material];
-    const auto& material = soil.material;
-    cell.saturated_conductivity =
-        conductivity::value<Real>(material.conductivity, 1, cell.soil_porosity);
-    cell.conductivity = cell.saturated_conductivity;
-    if constexpr (is_unsaturated<M>) {
-      const Real saturation = saturation_at_pressure<M>(material, soil.pressure_floor, cell);
-      if (saturation < 1)
-        cell.conductivity = conductivity::value<Real>(
-            material.conductivity, swrc::effective_saturation<Real>(material.retention, saturation),
-            cell.porosity);
-    }
-  });
+  constexpr std::size_t cells = Block<State<M>::dim>::cells;
+  auto& nodes = state.nodes;
+  parallel_for(static_cast<std::size_t>(state.grid.slots()), state.options.threads,
+               [&](std::size_t s, int) {
+                 CellBatch<M> batch;
+                 for (std::size_t i = s * cells; i < (s + 1) * cells; ++i) {
+                   auto& cell = nodes.cell[i];
+                   if (nodes.dof[i] != static_cast<std::int32_t>(i) || !(cell.soil_share > 0))
+                     continue;
+                   if (batch.count == lane_count || cell.material != batch.material)
+                     find_conductivities(state, batch);
+                   batch.material = cell.material;
+                   batch.cell[batch.count++] = &cell;
+                 }
+                 find_conductivities(state, batch);
+               });
 }
 
 /// Conductivity between two pressures, Kirchhoff blend of DESIGN section 3 step 4:
@@ -82,13 +119,43 @@ Real series_factor(const Cell<Dim>& a, const Cell<Dim>& b, const Cell<Dim>& up) 
   return 2 * (&up == &a ? k_b : k_a) / (k_a + k_b);
 }
 
+/// Eight faces in soil under suction, whose mean conductivities are found together.
+template <class M>
+struct FaceBatch {
+  int count = 0;
+  std::uint8_t material = 0;
+  FaceFlux* face[lane_count];
+  alignas(64) double pressure_a[lane_count], pressure_b[lane_count], porosity[lane_count];
+  alignas(64) double upstream[lane_count], gravity_head[lane_count], factor[lane_count];
+};
+
+/// Kirchhoff blends of up to eight faces.
+template <class M>
+void find_means(const State<M>& state, FaceBatch<M>& batch) {
+  if (batch.count == 0) return;
+  if constexpr (is_unsaturated<M>) {
+    for (int l = batch.count; l < lane_count; ++l)
+      for (double* values :
+           {batch.pressure_a, batch.pressure_b, batch.porosity, batch.upstream, batch.gravity_head})
+        values[l] = values[0];
+    const Lanes a = Lanes::load(batch.pressure_a), b = Lanes::load(batch.pressure_b);
+    const Lanes mean =
+        state.soils[batch.material].kirchhoff->mean(a, b, Lanes::load(batch.porosity));
+    const Lanes k = blend_conductivity<Lanes>(Lanes::load(batch.upstream), mean,
+                                              Lanes::load(batch.gravity_head), b - a);
+    for (int l = 0; l < batch.count; ++l) batch.face[l]->conductivity = batch.factor[l] * k[l];
+  }
+  batch.count = 0;
+}
+
 /// Face between two soil cells with different pressures. The water moves as fast as the upstream
 /// saturation lets it, k H / (n S_up gamma), and there is as much of it as both cells hold in the mean:
 /// n (S_a + S_b) / 2. (With n S_up the fronts of rain run ahead: in cells of 0.1 m rms of S 0.0155 for
-/// 0.0067 after 4500 s, see tests/verify/rain_infiltration.cpp.)
+/// 0.0067 after 4500 s, see tests/verify/rain_infiltration.cpp.) Its conductivity
+/// is the upstream one, or follows from `batch`.
 template <class M>
 void inside_face(const State<M>& state, int axis, const Cell<State<M>::dim>& a,
-                 const Cell<State<M>::dim>& b, FaceFlux& face) {
+                 const Cell<State<M>::dim>& b, FaceFlux& face, FaceBatch<M>& batch) {
   const Real h = state.grid.cell_size();
   const Real distance = max(0.5 * h, b.centroid[axis] - a.centroid[axis]);
   const Real drop = b.pressure - a.pressure - hydrostatic(state, a.centroid, b.centroid);
@@ -97,10 +164,21 @@ void inside_face(const State<M>& state, int axis, const Cell<State<M>::dim>& a,
   face.distance = distance;
   face.head_gradient = drop / distance;
   face.saturation = up.saturation;
-  face.conductivity = series_factor(a, b, up) *
-                      face_conductivity(state, up.material, up.conductivity, a.pressure, b.pressure,
-                                        up.porosity, gravity_head(state, axis, distance));
-  if (up.saturation > 0) face.conductivity *= 0.5 * (a.saturation + b.saturation) / up.saturation;
+  const Real factor = up.saturation > 0 ? series_factor(a, b, up) *
+                                              (0.5 * (a.saturation + b.saturation) / up.saturation)
+                                        : 1;
+  face.conductivity = factor * up.conductivity;
+  if (!is_unsaturated<M> || (a.pressure >= 0 && b.pressure >= 0)) return;
+  if (batch.count == lane_count || batch.material != up.material) find_means(state, batch);
+  const int l = batch.count++;
+  batch.material = up.material;
+  batch.face[l] = &face;
+  batch.pressure_a[l] = a.pressure;
+  batch.pressure_b[l] = b.pressure;
+  batch.porosity[l] = up.porosity;
+  batch.upstream[l] = up.conductivity;
+  batch.factor[l] = factor;
+  batch.gravity_head[l] = gravity_head(state, axis, distance);
 }
 
 /// Face between soil and a held pressure (free water, an open surface or a wall) at x_face along
@@ -225,28 +303,29 @@ void water_face(const State<M>& state, const CellView<M>& view, int axis,
 
 /// The lower face of one cell along one axis.
 template <class M>
-FaceFlux find_face(const State<M>& state, const CellView<M>& view, int axis) {
+void find_face(const State<M>& state, const CellView<M>& view, int axis, FaceFlux& face,
+               FaceBatch<M>& batch) {
   const auto& nodes = state.nodes;
-  FaceFlux face;
+  face = FaceFlux{};
   const int cells = state.grid.cells()[axis];
   const int position = view.cell[axis];
-  if (position > cells) return face;
+  if (position > cells) return;
   for (int d = 0; d < State<M>::dim; ++d)
-    if (d != axis && view.cell[d] >= state.grid.cells()[d]) return face;
+    if (d != axis && view.cell[d] >= state.grid.cells()[d]) return;
   const auto owner = [&](std::int32_t e) { return nodes.dof[static_cast<std::size_t>(e)]; };
   const std::int32_t own = position < cells ? owner(view.entry()) : -1;
   const std::int32_t low = position > 0 ? owner(view.neighbour(axis, -1)) : -1;
-  if (own == low) return face;
+  if (own == low) return;
   const Cell<State<M>::dim>* above = own < 0 ? nullptr : &nodes.cell[static_cast<std::size_t>(own)];
   const Cell<State<M>::dim>* below = low < 0 ? nullptr : &nodes.cell[static_cast<std::size_t>(low)];
-  if ((above && above->drop) || (below && below->drop)) return face;
+  if ((above && above->drop) || (below && below->drop)) return;
   const bool soil_above = above && above->kind == CellKind::soil;
   const bool soil_below = below && below->kind == CellKind::soil;
-  if (!soil_above && !soil_below) return face;
+  if (!soil_above && !soil_below) return;
   face.area = face_area(view, axis);
   if (soil_above && soil_below) {
-    inside_face(state, axis, *below, *above, face);
-    return face;
+    inside_face(state, axis, *below, *above, face, batch);
+    return;
   }
   face.soil_below = soil_below;
   const auto& soil = soil_below ? *below : *above;
@@ -256,7 +335,6 @@ FaceFlux find_face(const State<M>& state, const CellView<M>& view, int axis) {
     water_face(state, view, axis, soil, soil_below ? *above : *below, face);
   else
     surface_face(state, view, axis, soil, face);
-  return face;
 }
 
 /// Calls f(axis, face) for every face of a pressure cell and its slivers.
@@ -318,13 +396,16 @@ void find_faces(State<M>& state) {
   constexpr int dim = State<M>::dim;
   if (state.films) find_columns(state);
   find_conductivities(state);
-  for_cells(state.grid, state.options.threads,
-            [&](std::int32_t e, const Index<dim>& local, int slot, int) {
-              const CellView<M> view(state, local, slot);
-              for (int d = 0; d < dim; ++d)
-                state.nodes.face[static_cast<std::size_t>(e) * dim + static_cast<std::size_t>(d)] =
-                    find_face(state, view, d);
-            });
+  parallel_for(static_cast<std::size_t>(state.grid.slots()), state.options.threads,
+               [&](std::size_t s, int) {
+                 FaceBatch<M> batch;
+                 FaceFlux* face = &state.nodes.face[s * Block<dim>::cells * dim];
+                 for_cube<dim>(0, Block<dim>::edge, [&](const Index<dim>& local) {
+                   const CellView<M> view(state, local, static_cast<int>(s));
+                   for (int d = 0; d < dim; ++d) find_face(state, view, d, *face++, batch);
+                 });
+                 find_means(state, batch);
+               });
   share_supplies(state);
   find_reference_pressures(state);
 }

@@ -38,6 +38,11 @@ inline constexpr int content = 4;          ///< sum V theta(p) [m3]
 inline constexpr int storage = 5;          ///< sum V d(theta)/dp [m3/Pa]
 inline constexpr int skeleton_volume = 6;  ///< sum V of the solid points [m3]
 inline constexpr int mean_stress = 7;      ///< sum V tr(sigma*)/3 [J]
+// The same record once the gains of cells are known: what a pore-water point takes of them.
+inline constexpr int by_pores = 0;       ///< mass per pore volume of the point [kg/m3]
+inline constexpr int by_mass = 1;        ///< mass per mass of the point [-]
+inline constexpr int brought = 2;        ///< first of three, velocity of the water that comes [m/s]
+inline constexpr int velocity_gain = 5;  ///< first of three, change of velocity [m/s]
 }  // namespace lane
 
 /// What fills a cell.
@@ -64,6 +69,7 @@ struct Cell {
   Real water = 0;                   ///< M_c [kg]
   Real content = 0;                 ///< water volume at reference density, M / rho_l0 [m3]
   Real storage = 0;                 ///< sum V d(theta)/dp [m3/Pa]
+  Real modulus = 0;                 ///< K* = S / (S/K + S_p) of soil [Pa]
   Real low = 0, high = 0;           ///< bracket of the pressure while it is sought [Pa]
   Real centroid[Dim] = {};          ///< of the water-bearing volume [m]
   Real quad_volume = 0;             ///< volume the pressure acts in, f V_c [m3]
@@ -153,14 +159,20 @@ struct GridState {
   AlignedVector<Record> materials;   ///< bulk volume of each material in a cell
   AlignedVector<Record> relative;    ///< n (v^l - v^s) and mean face H of a node
   std::vector<Real> limited;         ///< water the donor limiter held back, per block [kg]
+  std::vector<Real> frequency2;      ///< highest frequency squared of soil, per block [1/s2]
   std::vector<Real> open_impulse;    ///< pressure force that no phase took, Dim per block [N s]
   std::vector<Real> ledger_in;       ///< inflow of a block through each HeldPressure [kg]
   std::vector<Cell<Dim>> cell;
   std::vector<char> retry;        ///< blocks whose pressures are not found yet, one per slot
-  std::vector<char> sought;       ///< scratch: retry before a pass
+  std::vector<char> sought;       ///< scratch: marks of blocks before they are widened
+  std::vector<char> near_sliver;  ///< blocks that hold a sliver or lie beside one, one per slot
+  /// Pressure of the water of a cell at the origin, p_c - rho_l g . x_c, by the cell whose pressure it
+  /// uses; one per cell [Pa].
+  std::vector<Real> head;
+  std::vector<Real> filling;      ///< mass per pore volume of saturated soil, else 0 [kg/m3]
+  std::vector<Real> rate;         ///< div v^s of the same cell; NaN where there is none [1/s]
   std::vector<std::int32_t> dof;  ///< entry of the cell whose pressure a cell uses, -1: none
   std::vector<FaceFlux> face;     ///< Dim per cell
-  std::vector<char> has_slivers;  ///< blocks with slivers of soil, one per slot
   std::vector<CarriedNode<Dim>> carried;  ///< in ascending order, once per carrying cell
   std::vector<std::uint16_t> node_flags;  ///< walls and prescribed motion, see NodeFlag
 };

@@ -63,7 +63,7 @@ VADOSE_INLINE SymTensor<Lanes, State<M>::stress_size> load_stress(const State<M>
 }
 
 /// Adds one batch of solid points to a tile of nodes. With MeanByCell the mean stress goes to the
-/// cells instead, where it meets the liquid pressure: see add_cell().
+/// cells instead, where it meets the liquid pressure: see prepare_cell().
 template <bool MeanByCell, class M>
 VADOSE_INLINE void map_solid_batch(const State<M>& state, std::size_t b,
                                    const TileFrame<State<M>::dim>& frame, Record* tile,
@@ -91,26 +91,39 @@ VADOSE_INLINE void map_solid_batch(const State<M>& state, std::size_t b,
     record[lane::mean_stress] = volume * mean;
     add_to_cells(cells, record, cell_sums);
   }
-  Scatter<true, affine, Shape, dim> scatter;
   Lanes velocity[dim];
   for (int d = 0; d < dim; ++d) velocity[d] = state.solid.load(field::velocity, b, d);
-  if constexpr (affine)
-    affine_velocity(state, state.solid, b, stencil, frame, x, mass, velocity, scatter.moment);
-  for (auto& r : scatter.value) r = Lanes(0.0);
-  scatter.value[lane::mass] = mass;
-  for (int d = 0; d < dim; ++d) scatter.value[lane::momentum + d] = mass * velocity[d];
-  scatter.value[lane::volume] = volume;
-  if constexpr (State<M>::Kinematics::axisymmetric)
-    scatter.value[lane::force] =
-        -volume * stress[2] * over_radius<typename State<M>::Kinematics, dim>(x, Real(0));
-  transpose(scatter.value);
-  for (int e = 0; e < dim; ++e) {
-    for (auto& r : scatter.slope[e]) r = Lanes(0.0);
-    for (int d = 0; d < dim; ++d)
-      scatter.slope[e][lane::force + d] = -volume * stress[stress_index<dim>(d, e)];
-    transpose(scatter.slope[e]);
+  if constexpr (!affine && !State<M>::Kinematics::axisymmetric) {
+    Lanes value[5], force[dim][dim];
+    value[lane::mass] = mass;
+    for (int d = 0; d < 3; ++d)
+      value[lane::momentum + d] = d < dim ? mass * velocity[d] : Lanes(0.0);
+    value[4] = volume;
+    for (int e = 0; e < dim; ++e)
+      for (int d = 0; d < dim; ++d) force[e][d] = -volume * stress[stress_index<dim>(d, e)];
+    ForceScatter<Shape, dim> scatter;
+    scatter.set(value, force);
+    scatter.add(stencil, tile);
+  } else {
+    Scatter<true, affine, Shape, dim> scatter;
+    if constexpr (affine)
+      affine_velocity(state, state.solid, b, stencil, frame, x, mass, velocity, scatter.moment);
+    for (auto& r : scatter.value) r = Lanes(0.0);
+    scatter.value[lane::mass] = mass;
+    for (int d = 0; d < dim; ++d) scatter.value[lane::momentum + d] = mass * velocity[d];
+    scatter.value[lane::volume] = volume;
+    if constexpr (State<M>::Kinematics::axisymmetric)
+      scatter.value[lane::force] =
+          -volume * stress[2] * over_radius<typename State<M>::Kinematics, dim>(x, Real(0));
+    transpose(scatter.value);
+    for (int e = 0; e < dim; ++e) {
+      for (auto& r : scatter.slope[e]) r = Lanes(0.0);
+      for (int d = 0; d < dim; ++d)
+        scatter.slope[e][lane::force + d] = -volume * stress[stress_index<dim>(d, e)];
+      transpose(scatter.slope[e]);
+    }
+    scatter.add(stencil, tile);
   }
-  scatter.add(stencil, tile);
 }
 
 /// Mean Bishop stress of every pressure cell.
@@ -153,6 +166,7 @@ VADOSE_INLINE void into_pressure_cell(const State<M>& state, const CellFinder<St
                                       const std::int32_t* entries, int slot,
                                       Lanes (&x)[State<M>::dim]) noexcept {
   constexpr int dim = State<M>::dim;
+  if (!state.nodes.near_sliver[static_cast<std::size_t>(slot)]) return;
   const Real h = state.grid.cell_size();
   for (int l = 0; l < lane_count; ++l) {
     const std::int32_t e = entries[cells.index[l]];

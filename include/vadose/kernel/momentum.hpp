@@ -74,48 +74,120 @@ void quad_coordinates(const State<M>& state, const Index<State<M>::dim>& cell,
     xi[d] = (c.quad_point[d] - state.grid.origin()[d]) * over_h - cell[d];
 }
 
-/// Adds one cell's share to a node. corner: which corner of the cell the node is.
+/// Lanes of what a cell brings to its nodes: in the first record what goes with value and gradient
+/// of a node's function, in the second what adds up over the cells around a node, and their places.
+namespace cell_lane {
+inline constexpr int volume = 0;         ///< f V_c [m3]
+inline constexpr int pressure = 1;       ///< f V_c p [J]
+inline constexpr int soil_pressure = 2;  ///< f V_c S p [J]
+inline constexpr int mean_stress = 3;    ///< - f V_c (mean Bishop stress) of the soil in it [J]
+inline constexpr int soil_volume = 4;    ///< f V_c of soil [m3]
+inline constexpr int pores = 5;          ///< n of soil over it [m3]
+inline constexpr int holds_soil = 6;     ///< f V_c where there is soil at all [m3]
+// Second record:
+inline constexpr int saturation = 0;    ///< of a cell with soil [-]
+inline constexpr int conductivity = 1;  ///< of a cell with soil [m/s]
+inline constexpr int reference = 2;     ///< pressure at its surface, 0 without [Pa]
+inline constexpr int counts = 3;        ///< 1 with such a pressure, 16 with soil, 256 free water
+inline constexpr int place = 4;         ///< first of three, quadrature point in the cell
+inline constexpr int over_radius = 7;   ///< 1/r there [1/m]
+}  // namespace cell_lane
+
+/// The two records of a cell.
 /// DEVIATION: [Zhan] Eq. (22) takes the whole stress of each point to the nodes.
 /// The skeleton's mean stress acts here like the liquid's pressure, with the same quadrature: a
 /// free surface under suction (sigma* = S p) is then in balance node by node, and a stiff liquid
 /// does not lock the skeleton; the deviator acts through the points' own functions.
 template <class M>
-void add_cell([[maybe_unused]] const State<M>& state, const Cell<State<M>::dim>& c,
-              const Index<State<M>::dim>& cell, const Index<State<M>::dim>& corner,
-              NodeSums<State<M>::dim>& node) noexcept {
+void prepare_cell(const State<M>& state, const Cell<State<M>::dim>& c,
+                  const Index<State<M>::dim>& cell, Record& weighted, Record& plain) noexcept {
   constexpr int dim = State<M>::dim;
   Real xi[dim];
   quad_coordinates(state, cell, c, xi);
-  CornerFunction<dim> shape(xi, corner, 1 / state.grid.cell_size());
-  if constexpr (State<M>::Kinematics::axisymmetric)
-    shape.gradient[0] += shape.value / c.quad_point[0];
-  const Real weight = c.quad_volume * shape.value;
-  const Real soil_weight = weight * c.soil_share;
+  const bool soil = c.soil_share > 0;
   const Real p = c.quad_volume * c.quad_pressure;
-  node.volume += weight;
-  for (int d = 0; d < dim; ++d) {
-    node.force[d] += p * shape.gradient[d];
-    node.gradient[d] += c.quad_volume * shape.gradient[d];
-    node.soil_force[d] += c.saturation * p * shape.gradient[d];
-    node.skeleton_force[d] -= c.quad_volume * c.soil_share * c.mean_stress * shape.gradient[d];
+  weighted[cell_lane::volume] = c.quad_volume;
+  weighted[cell_lane::pressure] = p;
+  weighted[cell_lane::soil_pressure] = c.saturation * p;
+  weighted[cell_lane::mean_stress] = -(c.quad_volume * c.soil_share * c.mean_stress);
+  weighted[cell_lane::soil_volume] = soil ? c.quad_volume * c.soil_share : 0;
+  weighted[cell_lane::pores] = weighted[cell_lane::soil_volume] * c.soil_porosity;
+  weighted[cell_lane::holds_soil] = soil ? c.quad_volume : 0;
+  plain[cell_lane::saturation] = soil ? c.saturation : 0;
+  plain[cell_lane::conductivity] = soil ? c.conductivity : 0;
+  plain[cell_lane::reference] = c.has_reference ? c.reference_pressure : 0;
+  plain[cell_lane::counts] =
+      (c.has_reference ? 1 : 0) + (soil ? 16 : 0) + (c.kind == CellKind::free ? 256 : 0);
+  for (int d = 0; d < dim; ++d) plain[cell_lane::place + d] = xi[d];
+  plain[cell_lane::over_radius] = State<M>::Kinematics::axisymmetric ? 1 / c.quad_point[0] : 0;
+}
+
+/// The records of all cells around the nodes of a block.
+template <class M>
+struct CellParts {
+  static constexpr int dim = State<M>::dim;
+  const Record* weighted;
+  const Record* plain;
+
+  CellParts(State<M>& state, int slot, int thread)
+      : weighted(state.tile(thread, 2).record), plain(state.tile(thread, 3).record) {
+    const auto& grid = state.grid;
+    const Index<dim> first = grid.first_cell(slot);
+    for_cube<dim>(-1, Block<dim>::edge, [&](const Index<dim>& i) {
+      const int at = BlockGrid<dim>::tile_index(i);
+      const std::int32_t e = grid.tile(slot)[at];
+      if (state.nodes.dof[static_cast<std::size_t>(e)] != e) return;
+      Index<dim> cell = first;
+      for (int d = 0; d < dim; ++d) cell[d] += i[d];
+      prepare_cell(state, state.nodes.cell[static_cast<std::size_t>(e)], cell,
+                   state.tile(thread, 2).record[at], state.tile(thread, 3).record[at]);
+    });
   }
-  if (c.has_reference) {
-    node.reference += c.reference_pressure;
-    ++node.references;
+};
+
+/// Sums over the cells around a node, as they are added up.
+template <int Dim>
+struct CellSums {
+  Lanes value{0.0}, plain{0.0};
+  Lanes slope[Dim];
+
+  CellSums() noexcept {
+    for (auto& s : slope) s = Lanes(0.0);
   }
-  if (c.soil_share > 0) {
-    node.has_soil = true;
-    node.material = c.material;
-    node.soil_volume += soil_weight;
-    node.pores += soil_weight * c.soil_porosity;
-    ++node.soil_cells;
-    for (int d = 0; d < dim; ++d) {
-      node.saturation[d] += c.saturation;  // fallback where no face crosses the axis
-      node.conductivity[d] += c.conductivity;
-      node.normal[d] -= c.quad_volume * shape.gradient[d];
+  /// Adds a cell of which the node is corner `corner`.
+  VADOSE_INLINE void add(const Record& weighted, const Record& marks, const Index<Dim>& corner,
+                         Real over_h) noexcept {
+    Real xi[Dim];
+    for (int d = 0; d < Dim; ++d) xi[d] = marks[cell_lane::place + d];
+    CornerFunction<Dim> shape(xi, corner, over_h);
+    shape.gradient[0] += shape.value * marks[cell_lane::over_radius];
+    const Lanes w = Lanes::load(weighted.value);
+    value += w * Lanes(shape.value);
+    for (int d = 0; d < Dim; ++d) slope[d] += w * Lanes(shape.gradient[d]);
+    plain += Lanes::load(marks.value);
+  }
+  /// What the node needs of them.
+  void store(NodeSums<Dim>& node) const noexcept {
+    const int counts = static_cast<int>(plain[cell_lane::counts]);
+    node.references = counts % 16;
+    node.soil_cells = counts / 16 % 16;
+    node.has_soil = node.soil_cells > 0;
+    node.has_free = counts >= 256;
+    node.reference = plain[cell_lane::reference];
+    node.volume = value[cell_lane::volume];
+    node.soil_volume = value[cell_lane::soil_volume];
+    node.pores = value[cell_lane::pores];
+    for (int d = 0; d < Dim; ++d) {
+      node.force[d] = slope[d][cell_lane::pressure];
+      node.gradient[d] = slope[d][cell_lane::volume];
+      node.soil_force[d] = slope[d][cell_lane::soil_pressure];
+      node.skeleton_force[d] = slope[d][cell_lane::mean_stress];
+      node.normal[d] = -slope[d][cell_lane::holds_soil];
+      node.saturation[d] = plain[cell_lane::saturation];  // fallback where no face crosses the axis
+      node.conductivity[d] = plain[cell_lane::conductivity];
     }
   }
-}
+};
 
 /// Position of the face that counts at a node for the lower face of the cell at `at` in a tile: that
 /// face, or, where it lies between a sliver and the cell whose pressure the sliver shares, the surface
@@ -141,30 +213,32 @@ std::size_t face_at_node(const State<M>& state, const std::int32_t* tile, int at
 
 /// Gathers cells and faces around a node (local index in its block).
 template <class M>
-NodeSums<State<M>::dim> gather_node(const State<M>& state, const CellView<M>& view) {
+NodeSums<State<M>::dim> gather_node(const State<M>& state, const CellView<M>& view,
+                                    const CellParts<M>& parts) {
   constexpr int dim = State<M>::dim;
   const auto& nodes = state.nodes;
   NodeSums<dim> node;
   int air = 0, faces[dim] = {};
   Real saturation[dim] = {}, conductivity[dim] = {}, gradient[dim] = {};
   bool open = false;
+  CellSums<dim> sums;
+  const Real over_h = 1 / state.grid.cell_size();
   for_cube<dim>(0, 2, [&](const Index<dim>& corner) {
     // The cell of which this node is corner `corner`.
-    Index<dim> cell = view.cell;
     int at = view.at;
     bool inside = true;
     for (int d = 0; d < dim; ++d) {
-      cell[d] -= corner[d];
+      const int cell = view.cell[d] - corner[d];
       at -= corner[d] * BlockGrid<dim>::tile_stride(d);
-      inside = inside && cell[d] >= 0 && cell[d] < state.grid.cells()[d];
+      inside = inside && cell >= 0 && cell < state.grid.cells()[d];
     }
     const auto e = static_cast<std::size_t>(view.tile[at]);
     const std::int32_t owner = nodes.dof[e];
     if (inside && owner < 0) ++air;
     if (inside && owner == view.tile[at]) {
-      const auto& c = nodes.cell[e];
-      add_cell(state, c, cell, corner, node);
-      node.has_free = node.has_free || c.kind == CellKind::free;
+      sums.add(parts.weighted[at], parts.plain[at], corner, over_h);
+      if (state.soils.size() > 1 && nodes.cell[e].soil_share > 0)
+        node.material = nodes.cell[e].material;
     }
     // Faces whose plane goes through the node: lower faces of the cells on its upper side.
     for (int d = 0; d < dim; ++d) {
@@ -178,6 +252,7 @@ NodeSums<State<M>::dim> gather_node(const State<M>& state, const CellView<M>& vi
       gradient[d] += f.head_gradient;
     }
   });
+  sums.store(node);
   if (node.references > 0 && !node.has_free)
     for (int d = 0; d < dim; ++d)
       node.force[d] -= node.reference / node.references * node.gradient[d];
@@ -597,8 +672,8 @@ void record_response(State<M>& state, std::size_t i, const NodeSums<State<M>::di
 }
 
 /// One node: forces, drag, boundaries, new velocities. `Recorded`: for an implicit solution.
-template <bool Recorded = false, class M>
-void advance_node(State<M>& state, const CellView<M>& view) {
+template <bool Recorded = false, class M, class Parts>
+void advance_node(State<M>& state, const CellView<M>& view, [[maybe_unused]] const Parts& parts) {
   constexpr int dim = State<M>::dim;
   const auto i = static_cast<std::size_t>(view.entry());
   const std::uint16_t flags = state.nodes.node_flags[i];
@@ -613,7 +688,7 @@ void advance_node(State<M>& state, const CellView<M>& view) {
   NodeMotion<dim> before = node;
   Real skeleton_volume = 0;
   if constexpr (has_liquid<M>) {
-    sums = gather_node(state, view);
+    sums = gather_node(state, view, parts);
     if constexpr (is_deformable<M>)
       skeleton_volume = state.nodes.solid_in[i][lane::volume];
     else if constexpr (has_skeleton<M>)
@@ -644,16 +719,27 @@ void advance_node(State<M>& state, const CellView<M>& view) {
   store_node(state, i, sums, porosity, before, node);
 }
 
+/// Stands for the cells of a model without liquid.
+struct NoParts {
+  template <class M>
+  NoParts(const State<M>&, int, int) noexcept {}
+};
+
 /// All nodes.
 template <bool Recorded = false, class M>
 void advance_nodes(State<M>& state) {
   constexpr int dim = State<M>::dim;
   if constexpr (has_liquid<M>)
     state.nodes.open_impulse.assign(static_cast<std::size_t>(state.grid.slots() * dim), 0);
-  for_cells(state.grid, state.options.threads,
-            [&](std::int32_t, const Index<State<M>::dim>& local, int slot, int) {
-              advance_node<Recorded>(state, CellView<M>(state, local, slot));
-            });
+  using Parts = std::conditional_t<has_liquid<M>, CellParts<M>, NoParts>;
+  parallel_for(static_cast<std::size_t>(state.grid.slots()), state.options.threads,
+               [&](std::size_t s, int thread) {
+                 const int slot = static_cast<int>(s);
+                 const Parts parts(state, slot, thread);
+                 for_cube<dim>(0, Block<dim>::edge, [&](const Index<dim>& local) {
+                   advance_node<Recorded>(state, CellView<M>(state, local, slot), parts);
+                 });
+               });
   if constexpr (has_liquid<M>)
     for (std::size_t i = 0; i < state.nodes.open_impulse.size(); ++i)
       state.open_impulse[static_cast<int>(i % dim)] += state.nodes.open_impulse[i];

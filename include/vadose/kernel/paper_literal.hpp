@@ -270,6 +270,7 @@ Cell<State<M>::dim> printed_cell(const State<M>& state, const Record& sums,
   const Real compression = std::exp(cell.pressure / state.water.bulk_modulus);
   cell.saturation = min(1.0, cell.water / (state.water.density * cell.pore_volume * compression));
   cell.storage = sums[printed::storage] * compression;
+  cell.modulus = effective_modulus(cell, compression);
   for (int m = 1; m < static_cast<int>(state.soils.size()); ++m)
     if (materials[m] > materials[cell.material]) cell.material = static_cast<std::uint8_t>(m);
   return cell;

@@ -51,14 +51,26 @@ void solve_saturated(State<M>& state) {
 template <class M>
 VADOSE_INLINE Lanes cell_rates(const State<M>& state, const CellFinder<State<M>::dim>& cells,
                                const std::int32_t* entries, const Lanes& otherwise) noexcept {
-  Lanes rate = otherwise;
-  for (int l = 0; l < lane_count; ++l) {
-    const std::int32_t owner = state.nodes.dof[static_cast<std::size_t>(entries[cells.index[l]])];
-    if (owner < 0) continue;
-    const auto& cell = state.nodes.cell[static_cast<std::size_t>(owner)];
-    rate.set(l, cell.skeleton_rate);
-  }
-  return rate;
+  alignas(64) double rate[lane_count];
+  for (int l = 0; l < lane_count; ++l)
+    rate[l] = state.nodes.rate[static_cast<std::size_t>(entries[cells.index[l]])];
+  const Lanes found = Lanes::load(rate);
+  return select(found == found, found, otherwise);
+}
+
+/// The rates as cell_rates() reads them: of the cell whose pressure a cell uses, NaN without one.
+template <class M>
+void spread_rates(State<M>& state) {
+  constexpr std::size_t cells = Block<State<M>::dim>::cells;
+  auto& nodes = state.nodes;
+  parallel_for(
+      static_cast<std::size_t>(state.grid.slots()), state.options.threads, [&](std::size_t s, int) {
+        for (std::size_t i = s * cells; i < (s + 1) * cells; ++i) {
+          const std::int32_t owner = nodes.dof[i];
+          nodes.rate[i] =
+              owner < 0 ? unset : nodes.cell[static_cast<std::size_t>(owner)].skeleton_rate;
+        }
+      });
 }
 
 /// Grains this far apart no longer follow the volume between them [-]: a skeleton that has come
@@ -70,12 +82,49 @@ VADOSE_INLINE Lanes volume_stretch(const Lanes& porosity, const Lanes& strain) n
   return min(exp(strain), (Lanes(1.0) - porosity) * Lanes(1 / (1 - dispersed_porosity)));
 }
 
+/// Pressures of the cells as the points read them, in the blocks that are sought.
+template <class M>
+void find_heads(State<M>& state) {
+  constexpr int dim = State<M>::dim;
+  constexpr std::size_t cells = Block<dim>::cells;
+  auto& nodes = state.nodes;
+  const Vec<dim> weight = state.water.density * state.gravity;
+  parallel_for(static_cast<std::size_t>(state.grid.slots()), state.options.threads,
+               [&](std::size_t s, int) {
+                 if (!nodes.retry[s]) return;
+                 for (std::size_t i = s * cells; i < (s + 1) * cells; ++i) {
+                   const std::int32_t owner = nodes.dof[i];
+                   nodes.head[i] = 0;
+                   if (owner < 0) continue;
+                   const auto& cell = nodes.cell[static_cast<std::size_t>(owner)];
+                   Real head = cell.pressure;
+                   for (int d = 0; d < dim; ++d) head -= weight[d] * cell.centroid[d];
+                   nodes.head[i] = head;
+                 }
+               });
+}
+
+/// Trial pressures at eight points: those of their cells and the weight of the water between.
+template <class M>
+VADOSE_INLINE Lanes pressures_at(const State<M>& state, const CellFinder<State<M>::dim>& cells,
+                                 const std::int32_t* entries,
+                                 const Lanes (&x)[State<M>::dim]) noexcept {
+  alignas(64) double head[lane_count];
+  for (int l = 0; l < lane_count; ++l)
+    head[l] = state.nodes.head[static_cast<std::size_t>(entries[cells.index[l]])];
+  Lanes p = Lanes::load(head);
+  for (int d = 0; d < State<M>::dim; ++d) p += Lanes(state.water.density * state.gravity[d]) * x[d];
+  return p;
+}
+
 /// Sums content and storage of the pore water at the trial pressures of the cells; `Stretched`: in
 /// the volume after the step.
 template <bool Stretched = false, class M>
 void sum_content(State<M>& state, bool with_momentum) {
   constexpr int dim = State<M>::dim;
   const Lanes over_modulus(1 / state.water.bulk_modulus);
+  if constexpr (is_unsaturated<M>) find_heads(state);
+  if constexpr (Stretched) spread_rates(state);
   for_blocks_adding(state.liquid, state.options.threads, [&](const BatchRange& range, int thread) {
     if (!state.nodes.retry[static_cast<std::size_t>(range.slot)]) return;
     Tile<dim>& tile = state.tile(thread);
@@ -94,19 +143,7 @@ void sum_content(State<M>& state, bool with_momentum) {
       }
       if constexpr (is_unsaturated<M>) {
         if (group != state.free_group()) {
-          Lanes p;
-          for (int l = 0; l < lane_count; ++l) {
-            const std::int32_t owner =
-                state.nodes.dof[static_cast<std::size_t>(entries[cells.index[l]])];
-            Real at = 0;
-            if (owner >= 0) {
-              const auto& cell = state.nodes.cell[static_cast<std::size_t>(owner)];
-              at = cell.pressure;
-              for (int d = 0; d < dim; ++d)
-                at += state.water.density * state.gravity[d] * (x[d][l] - cell.centroid[d]);
-            }
-            p.set(l, at);
-          }
+          const Lanes p = pressures_at(state, cells, entries, x);
           Lanes porosity = state.liquid.load(field::porosity, b);
           Lanes volume = state.liquid.load(field::volume, b);
           if constexpr (Stretched) {
@@ -184,23 +221,6 @@ Record member_sums(const CellView<M>& view, const AlignedVector<Record>& records
   return total;
 }
 
-/// Marks the neighbours of blocks with unknown pressures: their points count there too.
-template <class M>
-void widen_retry(State<M>& state) {
-  state.nodes.sought = state.nodes.retry;
-  const auto& own = state.nodes.sought;
-  for (int s = 0; s < state.grid.slots(); ++s) {
-    if (!own[static_cast<std::size_t>(s)]) continue;
-    for_cube<State<M>::dim>(-1, 2, [&](const Index<State<M>::dim>& step) {
-      Index<State<M>::dim> c = state.grid.first_cell(s);
-      for (int d = 0; d < State<M>::dim; ++d) c[d] += step[d] * Block<State<M>::dim>::edge;
-      const std::int32_t e = state.grid.entry(c);
-      if (e != state.grid.outside())
-        state.nodes.retry[static_cast<std::size_t>(e / Block<State<M>::dim>::cells)] = 1;
-    });
-  }
-}
-
 /// Pressure of unsaturated cells: sum V theta(p_c + rho g (x - x_c), n) = M / rho_l0.
 template <class M>
 void solve_unsaturated(State<M>& state) {
@@ -244,30 +264,44 @@ void solve_unsaturated(State<M>& state) {
     bool any = false;
     for (const char r : nodes.retry) any = any || r;
     if (!any) break;
-    widen_retry(state);
+    nodes.sought = nodes.retry;  // points beyond their block count in its neighbours too
+    widen_marks(state.grid, nodes.sought, nodes.retry);
   }
-  for_pressure_cells(state, [&](Cell<dim>& cell, std::int32_t, int) {
-    if (cell.kind != CellKind::soil) return;
-    const Real compression = std::exp(cell.pressure / state.water.bulk_modulus);
-    cell.saturation = min(1.0, cell.content / (cell.pore_volume * compression));
-  });
 }
 
-/// Mean water velocity of every pressure cell, from the momentum summed with the content.
+/// Mean velocity of the water of a cell, from the momentum summed with the content.
 template <class M>
-void mean_water_velocities(State<M>& state) {
-  constexpr int dim = State<M>::dim;
-  for_cells(state.grid, state.options.threads,
-            [&](std::int32_t e, const Index<dim>& local, int slot, int) {
-              const auto i = static_cast<std::size_t>(e);
-              if (state.nodes.dof[i] != e) return;
-              auto& cell = state.nodes.cell[i];
-              const Record sums = member_sums(CellView<M>(state, local, slot), state.nodes.content);
-              const Record masses = member_sums(CellView<M>(state, local, slot), state.nodes.pore);
-              const Record free = member_sums(CellView<M>(state, local, slot), state.nodes.free);
-              const Real m = masses[lane::water] + free[lane::free_water];
-              for (int d = 0; d < dim; ++d) cell.mean_velocity[d] = m > 0 ? sums[d] / m : 0;
-            });
+void find_mean_velocity(const State<M>& state, const CellView<M>& view,
+                        Cell<State<M>::dim>& cell) noexcept {
+  const Record sums = member_sums(view, state.nodes.content);
+  const Record pore = member_sums(view, state.nodes.pore);
+  const Record free = member_sums(view, state.nodes.free);
+  const Real m = pore[lane::water] + free[lane::free_water];
+  for (int d = 0; d < State<M>::dim; ++d) cell.mean_velocity[d] = m > 0 ? sums[d] / m : 0;
+}
+
+/// K* = S / (S/K + S_p) of soil from theta' = n (S/K + S_p) exp(p/K) summed over the cell [Pa].
+template <int Dim>
+Real effective_modulus(const Cell<Dim>& cell, Real compression) noexcept {
+  return cell.saturation * compression * cell.pore_volume / max(cell.storage, 1e-30);
+}
+
+/// What follows from the pressure of a cell once it is found.
+template <class M>
+void finish_cell(const State<M>& state, const CellView<M>& view,
+                 Cell<State<M>::dim>& cell) noexcept {
+  cell.quad_pressure = cell.pressure + hydrostatic(state, cell.centroid, cell.quad_point);
+  if (cell.kind == CellKind::free) {
+    cell.saturation = 1;
+    cell.quad_pressure = max(0.0, cell.quad_pressure);  // water does not pull on air
+  } else if constexpr (is_unsaturated<M>) {
+    const Real compression = std::exp(cell.pressure / state.water.bulk_modulus);
+    cell.saturation = min(1.0, cell.content / (cell.pore_volume * compression));
+    cell.modulus = effective_modulus(cell, compression);
+  } else {
+    cell.modulus = state.water.bulk_modulus;
+  }
+  find_mean_velocity(state, view, cell);
 }
 
 /// Steps 1 and 2: cells and their pressures from the points.
@@ -287,14 +321,12 @@ void find_pressures(State<M>& state) {
     sum_content(state, true);
     if constexpr (has_skeleton<M>) solve_saturated(state);
   }
-  mean_water_velocities(state);
-  for_pressure_cells(state, [&](Cell<dim>& cell, std::int32_t, int) {
-    cell.quad_pressure = cell.pressure + hydrostatic(state, cell.centroid, cell.quad_point);
-    if (cell.kind == CellKind::free) {
-      cell.saturation = 1;
-      cell.quad_pressure = max(0.0, cell.quad_pressure);  // water does not pull on air
-    }
-  });
+  for_cells(state.grid, state.options.threads,
+            [&](std::int32_t e, const Index<dim>& local, int slot, int) {
+              const auto i = static_cast<std::size_t>(e);
+              if (state.nodes.dof[i] != e) return;
+              finish_cell(state, CellView<M>(state, local, slot), state.nodes.cell[i]);
+            });
 }
 
 }  // namespace vadose::kernel

@@ -17,6 +17,7 @@ struct TileFrame {
   Real first[Dim] = {};      ///< position of tile node 0 along each axis [m]
   Real low_wall[Dim] = {};   ///< tile coordinate of the lower wall node
   Real high_wall[Dim] = {};  ///< tile coordinate of the upper wall node
+  bool at_wall[Dim] = {};    ///< a node of the tile is a wall or beyond one
 };
 
 /// Frame of the tile of a slot.
@@ -30,6 +31,7 @@ TileFrame<Dim> tile_frame(const BlockGrid<Dim>& grid, int slot) noexcept {
     f.first[d] = grid.origin()[d] + node * grid.cell_size();
     f.low_wall[d] = -node;
     f.high_wall[d] = grid.cells()[d] - node;
+    f.at_wall[d] = f.low_wall[d] > 0 || f.high_wall[d] < Block<Dim>::tile_edge - 1;
   }
   return f;
 }
@@ -42,7 +44,8 @@ struct Stencil {
   alignas(64) double weight[Dim][support][lane_count];  ///< [axis][node][point]
   alignas(64) double slope[Dim][support][lane_count];   ///< dN/dx [1/m]
   alignas(64) double first[Dim][lane_count];            ///< first node, tile coordinates
-  int offset[lane_count];                               ///< first node in the tile
+  alignas(32) int offset[lane_count];                   ///< first node in the tile
+  bool shared;                                          ///< all points have the same nodes
 
   /// Evaluates the basis at positions x [m] with GIMP half sizes half [m] (unused otherwise).
   VADOSE_INLINE void evaluate(const TileFrame<Dim>& frame, const Lanes (&x)[Dim],
@@ -53,8 +56,9 @@ struct Stencil {
       Lanes w[support], g[support];
       const Lanes u = (x[d] - Lanes(frame.first[d])) * Lanes(frame.over_cell_size);
       Lanes base = Shape::weights(u, half[d] * Lanes(frame.over_cell_size), w, g);
-      if constexpr (support == 3)
-        fold(base, Lanes(frame.low_wall[d]), Lanes(frame.high_wall[d]), w, g);
+      if constexpr (support == 3) {
+        if (frame.at_wall[d]) fold(base, Lanes(frame.low_wall[d]), Lanes(frame.high_wall[d]), w, g);
+      }
       base = into_tile(base);
       for (int i = 0; i < support; ++i) {
         w[i].store(weight[d][i]);
@@ -64,7 +68,8 @@ struct Stencil {
       at += base * Lanes(stride);
       stride *= Block<Dim>::tile_edge;
     }
-    for (int l = 0; l < lane_count; ++l) offset[l] = static_cast<int>(at[l]);
+    at.store_integers(offset);
+    shared = all(at == Lanes(at[0]));
   }
 
   /// Weight of node (i, j, k) of a point.

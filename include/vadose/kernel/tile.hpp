@@ -141,6 +141,76 @@ struct Scatter {
   }
 };
 
+/// The same for what the skeleton brings, in fewer operations: lanes 0 .. 3 and 7 times N, and lanes
+/// 4 .. 6 the sum over the axes of force_e dN/dx_e.
+template <class Shape, int Dim>
+class ForceScatter {
+ public:
+  /// By field: value[0 .. 3] and value[7] of eight points, force[e][d] along axis d that goes with the
+  /// slope along axis e.
+  VADOSE_INLINE void set(const Lanes (&value)[5], const Lanes (&force)[Dim][Dim]) noexcept {
+    for (int i = 0; i < lane_count; ++i) main_[i] = side_[i] = Lanes(0.0);
+    for (int i = 0; i < 4; ++i) main_[i] = value[i];
+    main_[7] = value[4];
+    for (int d = 0; d < Dim; ++d) {
+      main_[4 + d] = force[0][d];
+      if constexpr (Dim >= 2) side_[4 + d] = force[1][d];
+      if constexpr (Dim == 3) side_[d] = force[2][d];
+    }
+    transpose(main_);
+    if constexpr (Dim >= 2) transpose(side_);
+  }
+
+  VADOSE_INLINE void add(const Stencil<Shape, Dim>& s, Record* tile) const noexcept {
+    for (int l = 0; l < lane_count; ++l) add_point(s, l, tile + s.offset[l]);
+  }
+
+ private:
+  static constexpr int n = Shape::support;
+
+  VADOSE_INLINE void add_point(const Stencil<Shape, Dim>& s, int l, Record* first) const noexcept {
+    Lanes along[n], across[n];  // weights along axis 0 of main_ and side_
+    for (int i = 0; i < n; ++i) {
+      across[i] = Lanes(s.weight[0][i][l]);
+      along[i] = in_force(Lanes(s.slope[0][i][l]), across[i]);
+    }
+    const Lanes zero(0.0), main = main_[l];
+    const Lanes second = in_force(side_[l], zero);
+    Lanes third = zero;
+    if constexpr (Dim == 3) third = in_force(swap_halves(side_[l]), zero);
+    for (int k = 0; k < (Dim == 3 ? n : 1); ++k)
+      for (int j = 0; j < (Dim >= 2 ? n : 1); ++j) {
+        Record* row = first;
+        Lanes a = main, b = zero;
+        if constexpr (Dim == 2) {
+          row += j * BlockGrid<Dim>::tile_stride(1);
+          a = main * Lanes(s.weight[1][j][l]);
+          b = second * Lanes(s.slope[1][j][l]);
+        }
+        if constexpr (Dim == 3) {
+          row += j * BlockGrid<Dim>::tile_stride(1) + k * BlockGrid<Dim>::tile_stride(2);
+          const double wy = s.weight[1][j][l], wz = s.weight[2][k][l];
+          a = main * Lanes(wy * wz);
+          b = second * Lanes(s.slope[1][j][l] * wz) + third * Lanes(wy * s.slope[2][k][l]);
+        }
+        for (int i = 0; i < n; ++i) {
+          Lanes r = Lanes::load(row[i].value);
+          r += a * along[i];
+          if constexpr (Dim >= 2) r += b * across[i];
+          r.store(row[i].value);
+        }
+      }
+  }
+  /// Lanes 4 .. 6 of the first, the others of the second.
+  VADOSE_INLINE static Lanes in_force(const Lanes& force, const Lanes& other) noexcept {
+    alignas(64) static constexpr double force_lanes[lane_count] = {0, 0, 0, 0, 1, 1, 1, 0};
+    return select(Lanes::load(force_lanes) > Lanes(0.5), force, other);
+  }
+
+  Lanes main_[lane_count];  ///< by point: values, and the forces of axis 0 in lanes 4 .. 6
+  Lanes side_[lane_count];  ///< by point: forces of axis 1 in lanes 4 .. 6, of axis 2 in 0 .. 2
+};
+
 /// Sums over the nodes of eight points: sum N r (all lanes) and sum dN/dx_e r (lanes 0 .. 3).
 template <bool Slopes, class Shape, int Dim>
 struct Gather {
@@ -158,8 +228,65 @@ struct Gather {
       for (int e = 0; e < Dim; ++e) transpose(slope[e]);
   }
 
+  /// Both, of the first Dim lanes of each half only, which hold vectors.
+  VADOSE_INLINE void sum_vectors(const Stencil<Shape, Dim>& s, const Record* tile) noexcept {
+    if (s.shared) {
+      sum_shared(s, tile + s.offset[0]);
+    } else {
+      sum(s, tile);
+      by_field();
+    }
+  }
+
  private:
   static constexpr int n = Shape::support;
+
+  /// Eight points with the same nodes: each number of a node meets the weights of all points.
+  VADOSE_INLINE void sum_shared(const Stencil<Shape, Dim>& s, const Record* first) noexcept {
+    for (int c = 0; c < Dim; ++c) {
+      value[c] = value[4 + c] = Lanes(0.0);
+      if constexpr (Slopes)
+        for (int e = 0; e < Dim; ++e) slope[e][c] = Lanes(0.0);
+    }
+    for (int k = 0; k < (Dim == 3 ? n : 1); ++k)
+      for (int j = 0; j < (Dim >= 2 ? n : 1); ++j) add_shared_row(s, first, j, k);
+  }
+  /// One row of nodes along axis 0.
+  VADOSE_INLINE void add_shared_row(const Stencil<Shape, Dim>& s, const Record* first, int j,
+                                    int k) noexcept {
+    const Record* row = first;
+    Lanes w(1.0), g1(0.0), g2(0.0);
+    if constexpr (Dim >= 2) {
+      row += j * BlockGrid<Dim>::tile_stride(1);
+      w = Lanes::load(s.weight[1][j]);
+      g1 = Lanes::load(s.slope[1][j]);
+    }
+    if constexpr (Dim == 3) {
+      row += k * BlockGrid<Dim>::tile_stride(2);
+      g2 = w * Lanes::load(s.slope[2][k]);
+      w *= Lanes::load(s.weight[2][k]);
+      g1 *= Lanes::load(s.weight[2][k]);
+    }
+    Lanes low[Dim], high[Dim], along[Dim];
+    for (int c = 0; c < Dim; ++c) low[c] = high[c] = along[c] = Lanes(0.0);
+    for (int i = 0; i < n; ++i) {
+      const Lanes wi = Lanes::load(s.weight[0][i]);
+      for (int c = 0; c < Dim; ++c) {
+        low[c] += Lanes(row[i][c]) * wi;
+        high[c] += Lanes(row[i][4 + c]) * wi;
+        if constexpr (Slopes) along[c] += Lanes(row[i][c]) * Lanes::load(s.slope[0][i]);
+      }
+    }
+    for (int c = 0; c < Dim; ++c) {
+      value[c] += low[c] * w;
+      value[4 + c] += high[c] * w;
+      if constexpr (Slopes) {
+        slope[0][c] += along[c] * w;
+        if constexpr (Dim >= 2) slope[1][c] += low[c] * g1;
+        if constexpr (Dim == 3) slope[2][c] += low[c] * g2;
+      }
+    }
+  }
 
   VADOSE_INLINE void sum_point(const Stencil<Shape, Dim>& s, int l, const Record* first) noexcept {
     Lanes total(0.0), along[Slopes ? Dim : 1];

@@ -79,31 +79,53 @@ Real step_share(const Cell<Dim>& c) noexcept {
   return c.at_air && (c.members > 1 || c.raw_fill < 0.95) ? cut_cell_step : 1;
 }
 
-/// Largest step of the water and the soil it fills, 2/omega, over all cells.
+/// Highest frequency squared of a soil cell, over the square of the part of 2/omega that it allows.
 template <class M>
-StableStep wet_step(const State<M>& state) {
-  constexpr int dim = State<M>::dim;
-  const auto& nodes = state.nodes;
+Real cell_frequency2(const State<M>& state, const Cell<State<M>::dim>& c) noexcept {
   const Real h = state.grid.cell_size();
   const Real rho = state.water.density;
-  StableStep step;
-  for (std::size_t i = 0; i + Block<dim>::cells < nodes.cell.size(); ++i) {
-    if (nodes.dof[i] != static_cast<std::int32_t>(i)) continue;
-    const auto& c = nodes.cell[i];
-    if (c.kind == CellKind::free) {
-      step.take(2 / std::sqrt(4 * state.water.bulk_modulus / (rho * h * h)), StepLimit::water);
-    } else if constexpr (has_skeleton<M>) {
-      if (!(c.saturation > 0)) continue;
-      const auto& soil = state.soils[c.material];
-      // theta' = n (S/K + S_p) exp(p/K): K* = S / (S/K + S_p) = S n exp(p/K) / theta'.
-      const Real modulus = c.saturation * std::exp(c.pressure / state.water.bulk_modulus) *
-                           c.pore_volume / max(c.storage, 1e-30);
-      const Real w2 = is_rigid<M>
-                          ? seepage_frequency2(modulus, rho, h)
-                          : two_phase_frequency2(soil.p_wave_modulus, modulus, c.porosity,
-                                                 c.saturation, soil.material.solid_density, rho, h);
-      step.take(step_share(c) * 2 / std::sqrt(w2), StepLimit::two_phase);
+  const auto& soil = state.soils[c.material];
+  const Real w2 = is_rigid<M>
+                      ? seepage_frequency2(c.modulus, rho, h)
+                      : two_phase_frequency2(soil.p_wave_modulus, c.modulus, c.porosity,
+                                             c.saturation, soil.material.solid_density, rho, h);
+  const Real share = step_share(c);
+  return w2 / (share * share);
+}
+
+/// Largest step of the water and the soil it fills, 2/omega, over all cells.
+template <class M>
+StableStep wet_step(State<M>& state) {
+  constexpr std::size_t cells = Block<State<M>::dim>::cells;
+  auto& nodes = state.nodes;
+  const auto slots = static_cast<std::size_t>(state.grid.slots());
+  nodes.frequency2.assign(slots, 0);
+  nodes.sought.assign(slots, 0);  // whether there is free water
+  parallel_for(slots, state.options.threads, [&](std::size_t s, int) {
+    Real most = 0;
+    for (std::size_t i = s * cells; i < (s + 1) * cells; ++i) {
+      if (nodes.dof[i] != static_cast<std::int32_t>(i)) continue;
+      const auto& c = nodes.cell[i];
+      if (c.kind == CellKind::free) {
+        nodes.sought[s] = 1;
+      } else if constexpr (has_skeleton<M>) {
+        if (c.saturation > 0) most = max(most, cell_frequency2(state, c));
+      }
     }
+    nodes.frequency2[s] = most;
+  });
+  Real most = 0;
+  bool has_free = false;
+  for (std::size_t s = 0; s < slots; ++s) {
+    most = max(most, nodes.frequency2[s]);
+    has_free = has_free || nodes.sought[s];
+  }
+  StableStep step;
+  if (most > 0) step.take(2 / std::sqrt(most), StepLimit::two_phase);
+  if (has_free) {
+    const Real h = state.grid.cell_size();
+    step.take(2 / std::sqrt(4 * state.water.bulk_modulus / (state.water.density * h * h)),
+              StepLimit::water);
   }
   return step;
 }
@@ -144,7 +166,7 @@ void take_common_limits(const State<M>& state, StableStep& step) {
 
 /// Largest stable step of the present state, before the factor C, and motion limits after it.
 template <class M>
-StableStep stable_step(const State<M>& state) {
+StableStep stable_step(State<M>& state) {
   StableStep step;
   if constexpr (has_liquid<M>) step = wet_step(state);
   take_common_limits(state, step);
@@ -190,7 +212,7 @@ StableStep gravity_wave_step(const State<M>& state) {
 /// nothing limits the first step, in soil that does not move, it is the explicit one; the control of the
 /// error lets those that follow grow.
 template <class M>
-StableStep implicit_step(const State<M>& state) {
+StableStep implicit_step(State<M>& state) {
   StableStep step = skeleton_step(state);
   const StableStep waves = gravity_wave_step(state);
   step.take(waves.dt, waves.limit);

@@ -85,8 +85,7 @@ template <bool Slopes, class Shape, int Dim>
 VADOSE_INLINE void interpolate(const Stencil<Shape, Dim>& stencil, const Record* tile,
                                PointMotion<Dim>& motion) noexcept {
   Gather<Slopes, Shape, Dim> gather;
-  gather.sum(stencil, tile);
-  gather.by_field();
+  gather.sum_vectors(stencil, tile);
   for (int a = 0; a < Dim; ++a) {
     motion.velocity[a] = gather.value[lane::velocity + a];
     motion.increment[a] = gather.value[lane::increment + a];
@@ -286,8 +285,9 @@ VADOSE_INLINE void update_solid_batch(State<M>& state, std::size_t b,
 template <class M, bool RateByCell = has_liquid<M>>
 void update_solid(State<M>& state) {
   constexpr int dim = State<M>::dim;
+  if constexpr (RateByCell) spread_rates(state);
   for_blocks(state.solid, state.options.threads, [&](const BatchRange& range, int thread) {
-    Tile<dim>& tile = state.tile(thread);
+    Tile<dim>& tile = state.tile(thread, 2);
     tile.read(state.grid, range.slot, state.nodes.solid_out);
     const TileFrame<dim> frame = tile_frame(state.grid, range.slot);
     const std::int32_t* entries = state.grid.tile(range.slot);
@@ -296,7 +296,6 @@ void update_solid(State<M>& state) {
       state.solid.prefetch(b + 2);
       update_solid_batch<RateByCell>(state, b, frame, entries, tile.record, sums);
     }
-    for (auto& r : tile.record) r = Record{};
   });
 }
 
@@ -306,9 +305,82 @@ inline constexpr Real evening = 0.05;
 /// and at rest the same is lost in every step (1.5e-12 of the water in 1e5).
 inline constexpr Real evenness = 1e-14;
 
-/// Share of its cell's gain that each pore-water point takes: in saturated cells so that all are
-/// equally full; else outflow in proportion to its mass, inflow to the room it has. Exchanged water carries
-/// its momentum. Writes mass, velocity and pressure.
+/// Share of the gain of a soil cell that each of its points takes: in saturated cells in proportion to
+/// its pores; else outflow in proportion to its mass, inflow to the room it has.
+template <class M>
+void share_gain(const State<M>& state, const Cell<State<M>::dim>& cell, Record& share) noexcept {
+  const Real density = state.water.density;
+  if (cell.pressure >= 0) {
+    share[lane::by_pores] = cell.gain / cell.pore_volume;
+  } else if (cell.gain < 0) {
+    share[lane::by_mass] = cell.gain / cell.water;
+  } else {
+    // Room of the whole cell can be too small: then by pores.
+    const Real room = density * cell.pore_volume - cell.water;
+    const bool fits = is_unsaturated<M> && room > cell.gain;
+    share[lane::by_pores] = fits ? density * (cell.gain / room) : cell.gain / cell.pore_volume;
+    share[lane::by_mass] = fits ? -(cell.gain / room) : 0;
+  }
+}
+
+/// What the pore water of a cell takes, and its pressure after the step as heads are kept.
+template <class M>
+Real find_share(const State<M>& state, const Cell<State<M>::dim>& cell, Record& share) noexcept {
+  constexpr int dim = State<M>::dim;
+  Real p = cell.pressure;
+  if (cell.kind == CellKind::soil) {
+    share_gain(state, cell, share);
+    for (int d = 0; d < dim; ++d) share[lane::velocity_gain + d] = cell.momentum_gain[d];
+    if (cell.solved) {
+      p += cell.change;
+    } else {
+      // The storage at the start of the step predicts the pressure; it only starts the search.
+      const Real squeezed = cell.skeleton_rate * state.dt * cell.saturation * cell.pore_volume /
+                            max(cell.porosity, 1e-6);
+      p += (cell.gain / state.water.density - squeezed) / max(cell.storage, 1e-30);
+    }
+  } else if (cell.pore_gain != 0) {
+    share[lane::by_pores] = cell.pore_gain / cell.soil_pores;
+  }
+  for (int d = 0; d < dim; ++d) {
+    share[lane::brought + d] = cell.mean_velocity[d];
+    p -= state.water.density * state.gravity[d] * cell.centroid[d];
+  }
+  return p;
+}
+
+/// The shares of all cells, as points read them.
+template <class M>
+void find_shares(State<M>& state) {
+  constexpr std::size_t cells = Block<State<M>::dim>::cells;
+  auto& nodes = state.nodes;
+  parallel_for(static_cast<std::size_t>(state.grid.slots()), state.options.threads,
+               [&](std::size_t s, int) {
+                 for (std::size_t i = s * cells; i < (s + 1) * cells; ++i) {
+                   const std::int32_t owner = nodes.dof[i];
+                   nodes.content[i] = Record{};
+                   nodes.head[i] = nodes.filling[i] = 0;
+                   if (owner < 0) continue;
+                   const auto& cell = nodes.cell[static_cast<std::size_t>(owner)];
+                   nodes.head[i] = find_share(state, cell, nodes.content[i]);
+                   if (cell.kind == CellKind::soil && cell.pressure >= 0)
+                     nodes.filling[i] = cell.water / cell.pore_volume;
+                 }
+               });
+}
+
+/// Full pores: every point of a saturated cell becomes as full as the others, or a point that crosses to
+/// another cell would bring its own pressure along (1 % of filling is 1 % of K). Little by little:
+/// shares do not sum to 1 exactly, and done in one step that error would repeat.
+VADOSE_INLINE Lanes evened_out(const Lanes& filling, const Lanes& pores,
+                               const Lanes& mass) noexcept {
+  const Lanes lacks = filling * pores - mass;
+  const LaneMask counts = (filling > Lanes(0.0)) & (abs(lacks) > Lanes(evenness) * mass);
+  return select(counts, Lanes(evening) * lacks, Lanes(0.0));
+}
+
+/// What eight pore-water points take of the gains of their cells; exchanged water carries its
+/// momentum. Writes mass, velocity and pressure.
 template <class M>
 VADOSE_INLINE void exchange_batch(State<M>& state, std::size_t b,
                                   const CellFinder<State<M>::dim>& cells,
@@ -316,64 +388,35 @@ VADOSE_INLINE void exchange_batch(State<M>& state, std::size_t b,
                                   const Lanes (&x)[State<M>::dim]) noexcept {
   constexpr int dim = State<M>::dim;
   auto& points = state.liquid;
-  double* mass = points.at(field::mass, b);
-  double* pressure = points.at(field::liquid_pressure, b);
-  const double* volume = points.at(field::volume, b);
-  const double* porosity = points.at(field::porosity, b);
-  for (int l = 0; l < lane_count; ++l) {
-    const std::int32_t owner = state.nodes.dof[static_cast<std::size_t>(entries[cells.index[l]])];
-    if (owner < 0) continue;
-    const auto& cell = state.nodes.cell[static_cast<std::size_t>(owner)];
-    Real p = cell.pressure;
-    if (cell.kind == CellKind::soil && volume[l] > 0) {
-      const Real pores = volume[l] * porosity[l];
-      Real dm;
-      const Real room = state.water.density * cell.pore_volume - cell.water;
-      if (cell.pressure >= 0) {
-        // Full pores: every point of the cell becomes as full as the others, or a point that crosses
-        // to another cell would bring its own pressure along (1 % of filling is 1 % of K). Little by
-        // little: shares do not sum to 1 exactly, and done in one step that error would repeat.
-        const Real share = pores / cell.pore_volume;
-        const Real lacks = cell.water * share - mass[l];
-        dm = cell.gain * share;
-        if (std::fabs(lacks) > evenness * mass[l]) dm += evening * lacks;
-      } else if (cell.gain < 0) {
-        dm = cell.gain * mass[l] / cell.water;
-      } else {
-        // Room of the whole cell can be too small: then by pores.
-        dm = is_unsaturated<M> && room > cell.gain
-                 ? cell.gain * (state.water.density * pores - mass[l]) / room
-                 : cell.gain * pores / cell.pore_volume;
-      }
-      const Real after = mass[l] + dm;
-      for (int d = 0; d < dim; ++d) {
-        double& v = points.at(field::velocity, b, d)[l];
-        v = after > 0 ? (mass[l] * v + dm * cell.mean_velocity[d]) / after + cell.momentum_gain[d]
-                      : v;
-      }
-      mass[l] = after;
-      if (cell.solved) {
-        p += cell.change;
-      } else {
-        // The storage at the start of the step predicts the pressure; it only starts the search.
-        const Real squeezed = cell.skeleton_rate * state.dt * cell.saturation * cell.pore_volume /
-                              max(cell.porosity, 1e-6);
-        p += (cell.gain / state.water.density - squeezed) / max(cell.storage, 1e-30);
-      }
-    }
-    if (cell.kind == CellKind::free && cell.pore_gain != 0) {
-      const Real dm = cell.pore_gain * volume[l] * porosity[l] / cell.soil_pores;
-      const Real after = mass[l] + dm;
-      for (int d = 0; dm > 0 && d < dim; ++d) {
-        double& v = points.at(field::velocity, b, d)[l];
-        v = (mass[l] * v + dm * cell.mean_velocity[d]) / after;
-      }
-      mass[l] = after;
-    }
-    for (int d = 0; d < dim; ++d)
-      p += state.water.density * state.gravity[d] * (x[d][l] - cell.centroid[d]);
-    if (!state.frozen) pressure[l] = p;
+  Lanes share[lane_count];
+  for (int l = 0; l < lane_count; ++l)
+    share[l] =
+        Lanes::load(state.nodes.content[static_cast<std::size_t>(entries[cells.index[l]])].value);
+  transpose(share);
+  const Lanes mass = points.load(field::mass, b);
+  const Lanes volume = points.load(field::volume, b);
+  alignas(64) double fillings[lane_count];
+  for (int l = 0; l < lane_count; ++l)
+    fillings[l] = state.nodes.filling[static_cast<std::size_t>(entries[cells.index[l]])];
+  const Lanes filling = Lanes::load(fillings);
+  const Lanes pores = volume * points.load(field::porosity, b);
+  const Lanes held = select(volume > Lanes(0.0), mass, Lanes(0.0));
+  const Lanes gain = pores * share[lane::by_pores] + held * share[lane::by_mass] +
+                     evened_out(filling, pores, held);
+  const Lanes after = mass + gain;
+  // The pores of a cell of free water that give some away keep their velocity.
+  const LaneMask keeps =
+      !(after > Lanes(0.0)) |
+      ((gain < Lanes(0.0)) & (share[lane::by_mass] == Lanes(0.0)) & !(filling > Lanes(0.0)));
+  const Lanes over = Lanes(1.0) / select(keeps, Lanes(1.0), after);
+  for (int d = 0; d < dim; ++d) {
+    const Lanes v = points.load(field::velocity, b, d);
+    const Lanes mixed = (mass * v + gain * share[lane::brought + d]) * over;
+    points.store(field::velocity, b, d, select(keeps, v, mixed + share[lane::velocity_gain + d]));
   }
+  points.store(field::mass, b, after);
+  if (!state.frozen)
+    points.store(field::liquid_pressure, b, pressures_at(state, cells, entries, x));
 }
 
 /// Free water: pressure by the rate of its cell, relaxed towards the cell's; volume from mass and
@@ -531,9 +574,10 @@ VADOSE_INLINE void update_liquid_batch(State<M>& state, std::size_t b, int slot,
 template <class M>
 void update_liquid(State<M>& state) {
   constexpr int dim = State<M>::dim;
+  if constexpr (has_skeleton<M>) find_shares(state);
   for_blocks(state.liquid, state.options.threads, [&](const BatchRange& range, int thread) {
-    Tile<dim>& liquid = state.tile(thread, 0);
-    Tile<dim>& solid = state.tile(thread, 1);
+    Tile<dim>& liquid = state.tile(thread, 2);
+    Tile<dim>& solid = state.tile(thread, 3);
     liquid.read(state.grid, range.slot, state.nodes.liquid_out);
     if constexpr (is_deformable<M>) solid.read(state.grid, range.slot, state.nodes.solid_out);
     const TileFrame<dim> frame = tile_frame(state.grid, range.slot);
@@ -543,8 +587,6 @@ void update_liquid(State<M>& state) {
       state.liquid.prefetch(b + 2);
       update_liquid_batch(state, b, range.slot, frame, entries, liquid.record, solid.record, sums);
     }
-    for (auto& r : liquid.record) r = Record{};
-    for (auto& r : solid.record) r = Record{};
   });
 }
 

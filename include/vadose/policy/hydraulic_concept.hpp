@@ -158,6 +158,14 @@ template <class C, class T>
 concept ConductivityIn = requires(const C& law, T x) {
   { law.conductivity(x, x) } -> std::same_as<T>;
 };
+template <class R, class T>
+concept ScaleIn = requires(const R& curve, T x) {
+  { curve.suction_scale(x) } -> std::same_as<T>;
+};
+template <class C, class T>
+concept RelativeIn = requires(const C& law, T x) {
+  { law.relative(x) } -> std::same_as<T>;
+};
 template <class D, class T>
 concept DragIn = requires(const D& law, T x) {
   { law.coefficient(x, x, x, x) } -> std::same_as<T>;
@@ -235,6 +243,18 @@ T porosity_slope(const Curve& curve, T suction, T porosity) {
             saturation<Real>(curve, suction, porosity - h)) /
            (2 * h);
   }
+}
+
+/// What a curve that depends on x = suction_scale(n) s only multiplies the suction by [1/Pa].
+template <class T, ScalingRetention Curve>
+T suction_scale(const Curve& curve, T porosity) {
+  if constexpr (detail::ScaleIn<Curve, T>)
+    return curve.suction_scale(porosity);
+  else if constexpr (std::same_as<T, Lanes>)
+    return detail::lane_by_lane([&](Real n) { return static_cast<Real>(curve.suction_scale(n)); },
+                                porosity);
+  else
+    return static_cast<Real>(curve.suction_scale(porosity));
 }
 
 /// Residual degree of saturation [-]; 0 for curves without one.
@@ -320,6 +340,18 @@ T value(const Law& law, T effective_saturation, T porosity) {
   } else {
     return static_cast<Real>(law.conductivity(effective_saturation, porosity));
   }
+}
+
+/// Relative conductivity k_r [-] of a law that factorises, at effective saturation [-].
+template <class T, FactorisingConductivity Law>
+T relative(const Law& law, T effective_saturation) {
+  if constexpr (detail::RelativeIn<Law, T>)
+    return law.relative(effective_saturation);
+  else if constexpr (std::same_as<T, Lanes>)
+    return detail::lane_by_lane([&](Real se) { return static_cast<Real>(law.relative(se)); },
+                                effective_saturation);
+  else
+    return static_cast<Real>(law.relative(effective_saturation));
 }
 
 }  // namespace conductivity

@@ -50,6 +50,7 @@ class KirchhoffMean {
       : retention_(retention), conductivity_(conductivity), reference_(reference_porosity) {
     check::inside("reference_porosity", reference_porosity, 0, 1, "-");
     saturated_reference_ = conductivity::value<Real>(conductivity_, 1, reference_);
+    scale_reference_ = scale<Real>(reference_);
     check::positive("saturated conductivity", saturated_reference_, "m/s");
     tabulate();
   }
@@ -61,13 +62,29 @@ class KirchhoffMean {
     const Real wet = std::max(pressure_a, pressure_b);
     const Real dry = std::min(pressure_a, pressure_b);
     if (dry >= 0) return saturated;
-    const Real unit = scale(porosity);
+    const Real unit = scale<Real>(porosity);
     const Real x_wet = unit * std::max(-wet, 0.0);
     const Real x_dry = unit * -dry;
     if (wet < 0 && x_dry - x_wet <= 1e-5 * x_dry)  // closer than the table resolves: midpoint
-      return saturated * relative(0.5 * (x_wet + x_dry));
+      return saturated * relative<Real>(0.5 * (x_wet + x_dry));
     const Real positive = std::max(wet, 0.0) * unit;
     return saturated * (positive + integral(x_wet, x_dry)) / (positive + (x_dry - x_wet));
+  }
+
+  /// The same of eight faces.
+  Lanes mean(const Lanes& pressure_a, const Lanes& pressure_b,
+             const Lanes& porosity) const noexcept {
+    const Lanes zero(0.0), one(1.0);
+    const Lanes saturated = conductivity::value<Lanes>(conductivity_, one, porosity);
+    const Lanes wet = max(pressure_a, pressure_b), dry = min(pressure_a, pressure_b);
+    const Lanes unit = scale<Lanes>(porosity);
+    const Lanes x_wet = unit * max(-wet, zero), x_dry = unit * max(-dry, zero);
+    const Lanes positive = max(wet, zero) * unit;
+    const Lanes width = max(positive + (x_dry - x_wet), Lanes(1e-300));
+    Lanes ratio = (positive + integral(x_wet, x_dry)) / width;
+    const LaneMask close = (wet < zero) & (x_dry - x_wet <= Lanes(1e-5) * x_dry);
+    if (any(close)) ratio = select(close, relative<Lanes>(Lanes(0.5) * (x_wet + x_dry)), ratio);
+    return saturated * select(dry < zero, ratio, one);
   }
 
  private:
@@ -90,22 +107,25 @@ class KirchhoffMean {
     }
   };
 
-  Real scale([[maybe_unused]] Real porosity) const noexcept {
+  template <class T>
+  T scale([[maybe_unused]] const T& porosity) const noexcept {
     if constexpr (scales) {
-      return static_cast<Real>(retention_.suction_scale(porosity));
+      return swrc::suction_scale<T>(retention_, porosity);
     } else {
-      return head_scale_;
+      return T(head_scale_);
     }
   }
 
   /// k / k_sat at scaled suction x.
-  Real relative(Real x) const noexcept {
-    const Real s = swrc::saturation<Real>(retention_, x / scale(reference_), reference_);
-    const Real effective = swrc::effective_saturation<Real>(retention_, s);
+  template <class T>
+  T relative(const T& x) const noexcept {
+    const T s = swrc::saturation<T>(retention_, x / T(scale_reference_), T(reference_));
+    const T effective = swrc::effective_saturation<T>(retention_, s);
     if constexpr (scales) {
-      return static_cast<Real>(conductivity_.relative(effective));
+      return conductivity::relative<T>(conductivity_, effective);
     } else {
-      return conductivity::value<Real>(conductivity_, effective, reference_) / saturated_reference_;
+      return conductivity::value<T>(conductivity_, effective, T(reference_)) /
+             T(saturated_reference_);
     }
   }
 
@@ -119,7 +139,7 @@ class KirchhoffMean {
     for (int i = -2; i <= 2; ++i) {
       const int j = i < 0 ? -i : i;
       const Real x = std::exp(middle + (i < 0 ? -0.5 : 0.5) * width * abscissa[j]);
-      sum += weight[j] * relative(x) * x;
+      sum += weight[j] * relative<Real>(x) * x;
     }
     return 0.5 * width * sum;
   }
@@ -132,7 +152,8 @@ class KirchhoffMean {
       cell[static_cast<std::size_t>(i)] = cell_integral(log_first_ + i * width_, width_);
     Real below = 0;
     for (int i = 400; i > 0; --i) below += cell_integral(log_first_ - 0.1 * i, 0.1);
-    const Real above = std::max(relative(last_) * last_, 1e-290);  // k_r may underflow
+    relative_last_ = relative<Real>(last_);
+    const Real above = std::max(relative_last_ * last_, 1e-290);  // k_r may underflow
     fill(from_wet_, cell, below, false);
     fill(to_dry_, cell, above, true);
     split_ = 0;
@@ -151,7 +172,7 @@ class KirchhoffMean {
       if (k > 0) sum += cell[index(from_dry_end ? i : i - 1)];
       const Real x = std::exp(log_first_ + i * width_);
       curve.value[index(i)] = std::log(sum);
-      curve.slope[index(i)] = (from_dry_end ? -1 : 1) * x * relative(x) / sum;
+      curve.slope[index(i)] = (from_dry_end ? -1 : 1) * x * relative<Real>(x) / sum;
     }
   }
 
@@ -159,7 +180,7 @@ class KirchhoffMean {
   Real integral(Real x_wet, Real x_dry) const noexcept {
     Real beyond = 0;
     if (x_dry > last_) {
-      beyond = relative(last_) * (x_dry - std::max(x_wet, last_));
+      beyond = relative_last_ * (x_dry - std::max(x_wet, last_));
       if (x_wet >= last_) return beyond;
       x_dry = last_;
     }
@@ -171,6 +192,41 @@ class KirchhoffMean {
     return beyond + dry - wet;
   }
 
+  Lanes integral(const Lanes& x_wet, const Lanes& x_dry) const noexcept {
+    const Lanes last(last_), first(first_), one(1.0);
+    const Lanes beyond = Lanes(relative_last_) * max(x_dry - max(x_wet, last), Lanes(0.0));
+    const Lanes low = min(x_wet, last), high = min(x_dry, last);
+    const auto place = [&](const Lanes& x) {
+      return (log(max(x, first)) - Lanes(log_first_)) * Lanes(1 / width_);
+    };
+    const Lanes t_low = place(low), t_high = place(high);
+    const LaneMask dry_side = t_low >= Lanes(split_);
+    const Lanes a = at(dry_side, t_low) * select(dry_side, one, min(low / first, one));
+    const Lanes b = at(dry_side, t_high) * select(dry_side, one, min(high / first, one));
+    return beyond + select(dry_side, a - b, b - a);
+  }
+
+  /// Value of either curve, lane by lane, at place t of the table.
+  Lanes at(const LaneMask& dry_side, const Lanes& t) const noexcept {
+    const Lanes zero(0.0);
+    const Lanes cell = min(select(t > zero, floor(t), zero), Lanes(cells_ - 1.0));  // NaN: 0
+    alignas(32) int number[lane_count];
+    cell.store_integers(number);
+    alignas(64) double value[2][lane_count], slope[2][lane_count];
+    for (int l = 0; l < lane_count; ++l) {
+      const Curve& curve = dry_side[l] ? to_dry_ : from_wet_;
+      for (int i = 0; i < 2; ++i) {
+        value[i][l] = curve.value[index(number[l] + i)];
+        slope[i][l] = curve.slope[index(number[l] + i)];
+      }
+    }
+    const Lanes f = t - cell, rest = Lanes(1.0) - f, width(width_);
+    const Lanes rise = Lanes::load(value[1]) - Lanes::load(value[0]);
+    const Lanes a = width * Lanes::load(slope[0]) - rise;
+    const Lanes b = rise - width * Lanes::load(slope[1]);
+    return exp(Lanes::load(value[0]) + f * (rise + rest * (a * rest + b * f)));
+  }
+
   Real at(const Curve& curve, Real t) const noexcept {
     const int i = std::clamp(static_cast<int>(t), 0, cells_ - 1);
     return curve.at(index(i), t - i, width_);
@@ -180,6 +236,8 @@ class KirchhoffMean {
   Conductivity conductivity_;
   Real reference_;
   Real saturated_reference_ = 0;
+  Real scale_reference_ = 1;
+  Real relative_last_ = 0;  ///< k_r at the end of the table
   Real log_first_ = 0;
   Real width_ = 0;
   int split_ = 0;

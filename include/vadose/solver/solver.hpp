@@ -359,6 +359,10 @@ class Solver {
       n.cell.assign(size, {});
       n.dof.assign(size, -1);
       n.face.assign(size * dim, {});
+      n.head.assign(size, 0);
+      n.rate.assign(size, unset);
+      n.filling.assign(size, 0);
+      n.near_sliver.assign(static_cast<std::size_t>(state_.grid.slots()), 1);
       n.retry.assign(static_cast<std::size_t>(state_.grid.slots()), 0);
     }
   }
@@ -503,7 +507,7 @@ Solver<M, Scheme>::Solver(const Scene<M>& scene, const Options& options) {
                     options.escaped, options.resampling,      options.saturation_step};
   detail::assemble(state_, scene);
   collect_walls(scene);
-  state_.tiles.resize(static_cast<std::size_t>(2 * options.threads));
+  state_.tiles.resize(static_cast<std::size_t>(4 * options.threads));
   state_.sums.resize(static_cast<std::size_t>(options.threads));
   sort();
   remember_start();
@@ -580,8 +584,9 @@ void Solver<M, Scheme>::sort() {
   if constexpr (has_liquid<M>) state_.liquid.mark_blocks(state_.grid, occupied);
   make_blocks(occupied);
   const int groups = static_cast<int>(state_.soils.size()) + 1;
-  state_.solid.sort(state_.grid, groups);
-  if constexpr (has_liquid<M>) state_.liquid.sort(state_.grid, groups);
+  constexpr SortBy by = is_deformable<M> && M::Shape::support == 3 ? SortBy::node : SortBy::cell;
+  state_.solid.sort(state_.grid, groups, by);
+  if constexpr (has_liquid<M>) state_.liquid.sort(state_.grid, groups, by);
   find_films();
   state_.slack = 0;
 }

@@ -40,9 +40,10 @@ struct Tarantino {
   }
 
   /// x = suction_scale s [1/Pa], a e^b / gamma_l; the curve depends on x only.
-  Real suction_scale(Real porosity) const noexcept {
-    const Real n = porosity_dependent ? porosity : reference_porosity;
-    return a / unit_weight * std::pow(n / (1 - n), (1 - lambda) / lambda);
+  template <class T>
+  T suction_scale(T porosity) const noexcept {
+    const T n = porosity_dependent ? porosity : T(reference_porosity);
+    return T(a / unit_weight) * pow(n / (T(1.0) - n), (1 - lambda) / lambda);
   }
 
   /// S [-] and dS/ds [1/Pa] at suction [Pa]; negative suction counts as 0.
