@@ -713,8 +713,8 @@ void advance_node(State<M>& state, const CellView<M>& view, [[maybe_unused]] con
     }
   }
   apply_boundaries(state, sums, view.entry(), flags, node);
-  // Drops carry no pressure: the wall itself stops them.
-  if (!has_liquid<M> || sums.volume > 0) mirror_at_walls(flags, before);
+  // Free water hits walls, and drops carry no pressure that could stop them: there the wall does.
+  if (!has_liquid<M> || (sums.volume > 0 && !sums.has_free)) mirror_at_walls(flags, before);
   if constexpr (Recorded) record_response(state, i, sums, porosity, skeleton_volume, before, node);
   store_node(state, i, sums, porosity, before, node);
 }
