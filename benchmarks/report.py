@@ -100,8 +100,9 @@ def draw_work_precision():
 def draw_choices():
     """Errors of every choice at the same resolution."""
     cases = [("Terzaghi k = 1e-4 m/s", 20), ("two waves k = 9.8e-4 m/s", 50),
-             ("large strain k = k0 J^2", 20)]
-    figure, axes = plt.subplots(1, len(cases), figsize=(9, 2.8), layout="constrained")
+             ("large strain k = k0 J^2", 20), ("unsaturated E = 10 MPa S(n) k(n)", 10)]
+    figure, axes = plt.subplots(2, 2, figsize=(9, 5), layout="constrained")
+    axes = axes.flat
     for ax, (case, cells) in zip(axes, cases):
         first, lines = runs(case)
         bars = {short(v): p[2] for v, line in lines.items() for p in line if p[0] == cells}

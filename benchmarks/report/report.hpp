@@ -25,7 +25,27 @@ using verify::Variant;
 template <class... V>
 struct List {};
 
-/// Choices that differ from the default in one thing. A new scheme needs its name here only.
+/// The default with another scheme.
+template <class Scheme>
+using WithScheme = Variant<vadose::shape::Gimp, vadose::transfer::Flip, Scheme>;
+
+/// The printed equations, with some of their flaws mended: named by what is mended.
+template <vadose::PaperMends Mends = vadose::PaperMends{}>
+struct Printed : WithScheme<vadose::scheme::PaperLiteral<Mends>> {
+  static std::string name() {
+    std::string mended;
+    const auto add = [&](bool is, const char* what) {
+      if (is) mended += (mended.empty() ? "+" : ",") + std::string(what);
+    };
+    add(Mends.implicit_drag, "implicit_drag");
+    add(Mends.cell_average, "cell_average");
+    add(Mends.saturation, "S");
+    add(Mends.porosity_slope, "S_n");
+    return "gimp flip printed" + mended;
+  }
+};
+
+/// Choices that differ from the default in one thing.
 using OneByOne =
     List<Variant<>, Variant<vadose::shape::Linear>, Variant<vadose::shape::QuadraticBSpline>,
          Variant<vadose::shape::Gimp, vadose::transfer::Apic>,

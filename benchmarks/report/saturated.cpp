@@ -15,6 +15,9 @@ int main(int count, char** arguments) {
   all.add(report::OneByOne{}, "Terzaghi k = 1e-4 m/s", terzaghi, columns);
   all.add(report::List<report::Variant<>>{}, "Terzaghi k = 9.8e-4 m/s", verify::Terzaghi{},
           {{10}, {20}, {40}});
+  using Schemes = report::List<report::WithScheme<vadose::scheme::SemiImplicit>, report::Printed<>,
+                               report::Printed<{.implicit_drag = true}>>;
+  all.add(Schemes{}, "Terzaghi k = 1e-4 m/s", terzaghi, columns);
   const verify::TwoWaveColumn low;
   const verify::TwoWaveColumn high = verify::TwoWaveColumn::high();
   all.add(report::OneByOne{}, "two waves k = 9.8e-4 m/s", low, low.resolutions);

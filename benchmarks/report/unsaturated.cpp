@@ -16,6 +16,14 @@ int main(int count, char** arguments) {
       verify::UnsaturatedConsolidation small{.young_modulus = modulus,
                                              .porosity_dependent = coupled};
       all.add(standard, "unsaturated" + soil + laws, small, small.resolutions);
+      if (coupled && modulus > 5e6) {
+        using Choices =
+            report::List<report::WithScheme<vadose::scheme::SemiImplicit>,
+                         report::Printed<{.implicit_drag = true}>,
+                         report::Printed<{.saturation = true, .implicit_drag = true}>,
+                         report::Printed<{.porosity_slope = true, .implicit_drag = true}>>;
+        all.add(Choices{}, "unsaturated" + soil + laws, small, {{10}});
+      }
       verify::FigureConsolidation figure(modulus, coupled);
       figure.times = {0.01, 0.02, 0.05, 0.1, 0.15, 0.2, 0.3, 0.4, 0.5,
                       0.6,  0.8,  1,    1.2, 1.4,  1.6, 2,   2.5, 3};
