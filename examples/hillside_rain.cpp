@@ -141,7 +141,7 @@ int run(const Choices& c) {
                      .frames = c.frames,
                      .resume = c.resume};
   if (!c.resume) {
-    const auto report = solver.equilibrate({.tolerance = 5e-3, .max_time = 1});
+    const auto report = solver.equilibrate({.tolerance = 2e-3, .max_time = 2});
     std::printf(
         "before the rain: out of balance %.1e of the weight, largest plastic shear strain %.2g\n",
         report.residual, example::largest_law_state(solver));

@@ -157,7 +157,7 @@ Real saturation(const Choices& c) {
 vd::Solver<SandColumn> start(const Choices& c) {
   const auto cells = [&](Real edge) { return c.cell_size * std::ceil(edge / c.cell_size - 1e-9); };
   vd::Scene<SandColumn> scene{
-      {.box = {{0.0, 0.0}, {cells(c.length + 2.5 * c.height), cells(1.25 * c.height)}},
+      {.box = {{0.0, 0.0}, {cells(c.length + 3.5 * c.height), cells(1.25 * c.height)}},
        .cell_size = c.cell_size}};
   scene.gravity = {0.0, -9.81};
   scene.liquid = {.density = liquid_density, .bulk_modulus = c.bulk_modulus};
