@@ -38,7 +38,7 @@ def main():
     largest = np.percentile(moved[-1], 99.5)
     for column, ((time, points), distance) in enumerate(zip(states, moved)):
         start = points["Points"] - points["displacement"]
-        spacing = np.min(np.diff(np.unique(start[:, 0].round(6))))
+        spacing = float(f"{2 * start[:, 0].min():.2g}")  # the first points are half of it from the wall
         field, height = surface(points, distance, 2 * spacing)
         x, y = (2 * spacing * (np.arange(n) + 0.5) for n in field.shape)
         above = axes[0, column].pcolormesh(x, y, field.T, cmap="viridis", vmin=0, vmax=largest,

@@ -37,7 +37,7 @@ def draw(states, scene, value, label, limits, colours, path):
                                 sharex=True, sharey=True)
     figure.subplots_adjust(left=0.055, right=0.89, bottom=0.12, top=0.96, wspace=0.07, hspace=0.12)
     start = states[0][1]["Points"][:, :2] - states[0][1].get("displacement", np.zeros((1, 3)))[:, :2]
-    spacing = np.min(np.diff(np.unique(start[:, 0].round(7))))
+    spacing = float(f"{2 * start[:, 0].min():.2g}")  # the first points are half of it from the wall
     for axis, (time, points) in zip(axes.flat, states):
         axis.set_aspect("equal")
         axis.set_xlim(0, width)
