@@ -24,12 +24,14 @@
 #include <vadose/core/real.hpp>
 #include <vadose/core/sym_tensor.hpp>
 #include <vadose/grid/block_grid.hpp>
+#include <vadose/grid/height_field.hpp>
 #include <vadose/grid/point_set.hpp>
 #include <vadose/grid/region.hpp>
 #include <vadose/io/advance.hpp>
 #include <vadose/io/balance_history.hpp>
 #include <vadose/io/checkpoint.hpp>
 #include <vadose/io/checkpoint_file.hpp>
+#include <vadose/io/esri_grid.hpp>
 #include <vadose/io/file.hpp>
 #include <vadose/io/gauges.hpp>
 #include <vadose/io/history.hpp>

