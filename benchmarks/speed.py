@@ -41,9 +41,10 @@ def runs_of(path):
     return result
 
 
-runs = {}
+runs = defaultdict(list)
 for path in sorted(folder.glob("*.json")):
-    runs.update(runs_of(path))
+    for run_name, list_ in runs_of(path).items():
+        runs[run_name] += list_
 steps = {n: r for n, r in runs.items() if any("ns_nodes" in c for _, _, c in r)}
 races = {n: r for n, r in runs.items() if any("ratio" in c for _, _, c in r)}
 kernels = {n: r for n, r in runs.items() if n not in steps and n not in races}
