@@ -287,10 +287,10 @@ class DryRun {
         node.change.setZero();
         continue;
       }
-      const Vector<Dim> before = node.momentum / node.mass;
+      Vector<Dim> before = node.momentum / node.mass;
       node.velocity = before + dt * node.force / node.mass;
       for (int d = 0; d < Dim; ++d)
-        if (node.fixed[d]) node.velocity[d] = 0;
+        if (node.fixed[d]) node.velocity[d] = before[d] = 0;  // walls mirror
       node.change = node.velocity - before;
     }
     wave2_ = speed2_ = 0;

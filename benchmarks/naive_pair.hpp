@@ -25,6 +25,7 @@ struct PairNode {
   Vector<Dim> solid_momentum, solid_force, liquid_momentum;
   Vector<Dim> solid, solid_change, liquid, liquid_change;
   Vector<Dim> relative, head_gradient;  // n (v^l - v^s); mean over the faces through the node
+  Vector<Dim> drive;                    // head gradient that the relative velocity answers to
   bool wall[Dim] = {}, fixed[Dim] = {};
 };
 
@@ -34,7 +35,7 @@ struct PairCell {
   double volume = 0, water = 0, pores = 0, pressure = 0;
   Vector<Dim> centroid, momentum, velocity, momentum_gain;
   double content = 0, storage = 0, saturation = 0, porosity = 0;
-  double conductivity = 0, modulus = 0;
+  double conductivity = 0, saturated_conductivity = 0, modulus = 0;
   double skeleton_volume = 0, mean_stress = 0, rate = 0, gain = 0;
   bool found = false;
   double face_gradient[Dim], face_saturation[Dim], face_conductivity[Dim], face_flux[Dim];
@@ -242,6 +243,7 @@ class PairRun {
                 ? swrc::saturation_and_slope<Real>(material.retention, -c.pressure, c.porosity)
                       .saturation
                 : c.saturation;
+      c.saturated_conductivity = conductivity::value<Real>(material.conductivity, 1, c.porosity);
       c.conductivity = conductivity::value<Real>(
           material.conductivity,
           s < 1 ? swrc::effective_saturation<Real>(material.retention, s) : 1.0, c.porosity);
@@ -256,11 +258,17 @@ class PairRun {
         const PairCell<Dim>& up = drop > 0 ? b : a;
         b.face_gradient[axis] = drop / distance;
         b.face_saturation[axis] = up.saturation;
-        b.face_conductivity[axis] = up.conductivity;
-        if (a.pressure >= 0 && b.pressure >= 0) continue;
-        b.face_conductivity[axis] = blend_conductivity<Real>(
-            up.conductivity, soil_.kirchhoff->mean(a.pressure, b.pressure, up.porosity),
-            density_ * std::abs(gravity_[axis]) * distance, b.pressure - a.pressure);
+        // As much water as both cells hold in the mean; their saturated half ways in series.
+        double factor = 0.5 * (a.saturation + b.saturation) / up.saturation;
+        if (a.saturated_conductivity != b.saturated_conductivity)
+          factor *= 2 * (drop > 0 ? a : b).saturated_conductivity /
+                    (a.saturated_conductivity + b.saturated_conductivity);
+        double k = up.conductivity;
+        if (a.pressure < 0 || b.pressure < 0)
+          k = blend_conductivity<Real>(
+              k, soil_.kirchhoff->mean(a.pressure, b.pressure, up.porosity),
+              density_ * std::abs(gravity_[axis]) * distance, b.pressure - a.pressure);
+        b.face_conductivity[axis] = factor * k;
       }
     });
   }
@@ -360,10 +368,9 @@ class PairRun {
     const double a = node.liquid_mass, b = node.solid_mass;
     const double n = pores / volume;
     const double occupancy = std::min(1.0, node.skeleton_volume / volume);
-    const double porosity = 1 - (1 - n) * occupancy;
     const double phi = a / (density_ * volume), w = std::min(1.0, occupancy / 0.1);
-    const Vector<Dim> solid_before = node.solid_momentum / b;
-    const Vector<Dim> liquid_before = node.liquid_momentum / a;
+    Vector<Dim> solid_before = node.solid_momentum / b;
+    Vector<Dim> liquid_before = node.liquid_momentum / a;
     for (int d = 0; d < Dim; ++d) {
       const double s = faces[d] > 0 ? saturation[d] / faces[d] : cell_saturation / cells;
       const double k = faces[d] > 0 ? conductivity[d] / faces[d] : cell_conductivity / cells;
@@ -372,8 +379,8 @@ class PairRun {
       const double f_s = node.solid_force[d] + skeleton_force[d] +
                          w * (soil_force[d] - phi * force[d]) +
                          (1 - w) * occupancy * (soil_force[d] - n * s * force[d]);
-      const double drag = porosity * s * std::min(node.skeleton_volume, volume) *
-                          vadose::drag::coefficient<double>(soil_.material.drag, porosity, s, k,
+      const double drag = a / density_ *
+                          vadose::drag::coefficient<double>(soil_.material.drag, n, s, k,
                                                             soil_.material.unit_weight);
       const double q = dt_ * drag;
       const double r_l = a * liquid_before[d] + dt_ * f_l;
@@ -386,11 +393,14 @@ class PairRun {
         node.liquid[d] = ((b + q) * r_l + q * r_s) / det;
         node.solid[d] = ((a + q) * r_s + q * r_l) / det;
       }
-      if (node.wall[d]) node.liquid[d] = 0;
+      if (node.fixed[d]) solid_before[d] = 0;  // walls mirror
+      if (node.wall[d]) node.liquid[d] = liquid_before[d] = 0;
+      node.relative[d] = n * (node.liquid[d] - node.solid[d]);
+      node.drive[d] =
+          node.relative[d] * (density_ / (n * dt_) + s * soil_.material.unit_weight / k);
     }
     node.solid_change = node.solid - solid_before;
     node.liquid_change = node.liquid - liquid_before;
-    node.relative = porosity * (node.liquid - node.solid);
   }
 
   const PairNode<Dim>& corner_node(const int (&i)[Dim], int corner) const {
@@ -407,18 +417,21 @@ class PairRun {
     for (int axis = 0; axis < Dim; ++axis) {
       c.face_flux[axis] = 0;
       if (c.face_saturation[axis] < 0) continue;
-      double velocity = 0, mean = 0;
+      double drive = 0, mean = 0;
       for (int corner = 0; corner < corners; ++corner) {
         if ((corner >> axis) & 1) continue;
-        velocity += corner_node(i, corner).relative[axis] / (corners / 2);
+        drive += corner_node(i, corner).drive[axis] / (corners / 2);
         mean += corner_node(i, corner).head_gradient[axis] / (corners / 2);
       }
       const double s = c.face_saturation[axis], k = c.face_conductivity[axis];
       const double h = c.face_gradient[axis];
       const double n = h > 0 ? c.porosity : below(i, axis).porosity;
-      const double mobility =
-          s > 0 && k > 0 ? 1 / (4 * density_ / (n * s * dt_) + soil_.material.unit_weight / k) : 0;
-      c.face_flux[axis] = std::pow(grid_.h, Dim - 1) * (s * velocity - mobility * (h - mean));
+      const auto mobility = [&](double inertia) {
+        if (!(s > 0 && k > 0)) return 0.0;
+        return 1 / (inertia * density_ / (n * s * dt_) + soil_.material.unit_weight / k);
+      };
+      c.face_flux[axis] =
+          std::pow(grid_.h, Dim - 1) * (mobility(1) * drive - mobility(4) * (h - mean));
     }
   }
 
@@ -427,6 +440,7 @@ class PairRun {
     c.gain = 0;
     const auto add = [&](double flux, const PairCell<Dim>& from) {
       const double dm = dt_ * density_ * flux;
+      if (std::abs(dm) < 16 * 2.2e-16 * std::min(c.water, from.water)) return;
       c.gain += dm;
       if (dm > 0) momentum += dm * (from.velocity - c.velocity);
     };
@@ -489,7 +503,8 @@ class PairRun {
     const double pores = w.porosity * w.volume;
     double dm = c.gain * w.mass / c.water;
     if (c.pressure >= 0) {
-      dm = c.gain * pores / c.pores + 0.05 * (c.water * pores / c.pores - w.mass);
+      const double lacks = c.water * pores / c.pores - w.mass;
+      dm = c.gain * pores / c.pores + (std::abs(lacks) > 1e-14 * w.mass ? 0.05 * lacks : 0);
     } else if (c.gain >= 0) {
       const double room = density_ * c.pores - c.water;
       dm = room > c.gain ? c.gain * (density_ * pores - w.mass) / room : c.gain * pores / c.pores;
