@@ -391,8 +391,7 @@ void apply_special(const State<M>& state, std::int32_t entry, NodeMotion<State<M
 /// coefficient, per volume of liquid, times the liquid volume in the soil at the node. That is the mass
 /// that carries force and momentum, so that the answer of the liquid, k / gamma in the drag limit, does
 /// not depend on it: with the upstream n S V in its place soil of S = 0.3 would let in a third of what
-/// enters. A quadratic part is linearised at the closed-form root (see below). Grains that reach into
-/// free water, where no soil is around, are tied to it; loose they would ring for ever.
+/// enters. A quadratic part is linearised at the closed-form root (see below).
 template <class M>
 Real drag_coefficient(const State<M>& state, const NodeSums<State<M>::dim>& sums,
                       Real liquid_volume, int axis) {
@@ -425,7 +424,6 @@ Real quadratic_drag_factor(const State<M>& state, const NodeSums<State<M>::dim>&
       k += sums.conductivity[d] / dim;
       s += max(sums.saturation[d], 1e-12) / dim;
     }
-    if (!(k > 0)) return 1;
     const auto& material = state.soils[sums.material].material;
     const Real b = liquid_volume * drag::quadratic<Real>(material.drag, sums.porosity(), s, k,
                                                          material.unit_weight, state.water.density);
@@ -445,7 +443,7 @@ void advance_pair(const State<M>& state, const NodeSums<State<M>::dim>& sums,
   const bool has_solid = is_rigid<M> ? sums.has_soil : node.solid_mass > 0;
   const bool has_water = node.liquid_mass > 0;
   const Real liquid_volume = node.liquid_mass / state.water.density * sums.soil_share();
-  const bool drags = has_solid && has_water;
+  const bool drags = has_solid && liquid_volume > 0;
   Real linear[dim] = {};
   Real factor = 1;
   if (drags) {
