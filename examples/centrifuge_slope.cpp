@@ -61,7 +61,7 @@ struct Choices {
   int points_per_axis = 2, frames = 20, threads = 1;
   Scheme scheme = Scheme::explicit_steps;
   vd::law::Cone cone = vd::law::Cone::outer;
-  bool three_dimensional = false, frozen_porosity = false, resume = false, check = false;
+  bool three_dimensional = false, frozen_porosity = false, resume = false;
   std::string output = ".";
 };
 
@@ -85,7 +85,6 @@ constexpr const char* usage =
     "  --resume             go on from the checkpoint in the output folder\n"
     "  --threads N          needs OpenMP and as many idle processors (1)\n"
     "  --output DIR         folder for the results (.)\n"
-    "  --check              2 s in cells of 50 mm, compared with a bound: seconds\n"
     "  --help               this text\n";
 
 Choices read(int count, char** words) {
@@ -109,7 +108,6 @@ Choices read(int count, char** words) {
       .on("--three-dimensional", c.three_dimensional)
       .on("--frozen-porosity", c.frozen_porosity)
       .on("--resume", c.resume)
-      .on("--check", c.check)
       .preset("--paper", [&] { c.cell_size = 0.01, c.bulk_modulus = 2.2e9, c.end_time = 100; })
       .word("--output", c.output)
       .read(count, words);

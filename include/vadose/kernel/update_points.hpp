@@ -302,7 +302,7 @@ void update_solid(State<M>& state) {
 /// Part of the difference in filling that points of a saturated cell even out per step [-].
 inline constexpr Real evening = 0.05;
 /// Differences below this part of the filling are round-off and stay: evened out they do not sum to 0,
-/// and at rest the same is lost in every step (1.5e-12 of the water in 1e5).
+/// and at rest the same is lost in every step.
 inline constexpr Real evenness = 1e-14;
 
 /// Share of the gain of a soil cell that each of its points takes: in saturated cells in proportion to
