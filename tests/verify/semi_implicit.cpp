@@ -286,7 +286,7 @@ TEST_CASE("semi-implicit: zero suction on ground that cuts cells") {
   for (const Real cut : {0.0, 0.25, 0.5, 0.75}) {
     auto scene = sand_column(0.1, cut);
     scene.add(vd::bc::ZeroSuction{});
-    vd::Solver<Rigid, SemiImplicit> solver(scene, {.saturation_step = 0.01});
+    vd::Solver<Rigid, SemiImplicit> solver(scene);
     for (const Real t : {300.0, 600.0, 1200.0}) {
       solver.advance_to(t);
       const auto w = solver.water_balance();

@@ -301,6 +301,8 @@ void update_solid(State<M>& state) {
 
 /// Part of the difference in filling that points of a saturated cell even out per step [-].
 inline constexpr Real evening = 0.05;
+/// Part of the water of a cell that may leave with its mean velocity [-].
+inline constexpr Real drying = 0.1;
 /// Differences below this part of the filling are round-off and stay: evened out they do not sum to 0,
 /// and at rest the same is lost in every step.
 inline constexpr Real evenness = 1e-14;
@@ -408,10 +410,14 @@ VADOSE_INLINE void exchange_batch(State<M>& state, std::size_t b,
   const LaneMask keeps =
       !(after > Lanes(0.0)) |
       ((gain < Lanes(0.0)) & (share[lane::by_mass] == Lanes(0.0)) & !(filling > Lanes(0.0)));
+  // Water leaves with the mean velocity of its cell. Where much of it leaves in a step, bone-dry soil, it
+  // takes each point's own along instead, or the difference to the mean would grow as much.
+  const LaneMask dries =
+      (share[lane::by_mass] < Lanes(-drying)) & (share[lane::by_pores] == Lanes(0.0));
   const Lanes over = Lanes(1.0) / select(keeps, Lanes(1.0), after);
   for (int d = 0; d < dim; ++d) {
     const Lanes v = points.load(field::velocity, b, d);
-    const Lanes mixed = (mass * v + gain * share[lane::brought + d]) * over;
+    const Lanes mixed = select(dries, v, (mass * v + gain * share[lane::brought + d]) * over);
     points.store(field::velocity, b, d, select(keeps, v, mixed + share[lane::velocity_gain + d]));
   }
   points.store(field::mass, b, after);
