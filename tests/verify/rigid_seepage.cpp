@@ -111,6 +111,7 @@ TEST_CASE("rigid skeleton: infiltration into sand against Richards' equation, 30
           order);
   CHECK(verify::close(inflows().coarse, 0.0777, 0.04));
   CHECK(verify::close(inflows().fine, 0.0777, 0.02));
+  WARN(order > 1.3);  // 0.96, of errors a third as large as when it was 1.6: a known miss
   CHECK(order > 0.9);
 }
 

@@ -514,7 +514,7 @@ void apply_boundaries(const State<M>& state, const NodeSums<State<M>::dim>& sums
 /// Walls mirror what is before them: both before and after a step nothing crosses them, so that they
 /// give points no change of velocity of their own. (A node of a wall still receives momentum from points
 /// that only come near it. Taken for a change of velocity, what the wall keeps back of it brakes the
-/// points beside it in every step: div v off by 13 % in two layers of cells.)
+/// points beside it in every step: div v off by 9 to 21 % in two layers of cells.)
 template <int Dim>
 void mirror_at_walls(std::uint16_t flags, NodeMotion<Dim>& before) noexcept {
   for (int d = 0; d < Dim; ++d) {
