@@ -140,11 +140,11 @@ template <class A, class S, class R>
 void put_run(A& a, S& state, R& memory) {
   // Elsewhere: solid, liquid; nodes (what outlives a step). From the scene: soils, fluid, water,
   // gravity, factors, roughness. From the options: transfer, options. Made anew: grid, special,
-  // factor_values, flip_share, free_memory, tiles, trouble.
+  // factor_values, flip_share, tiles, trouble.
   auto& [grid, nodes, system, solid, liquid, soils, fluid, transfer, water, gravity, options, time,
-         dt, flip_share, free_memory, step, slack, frozen, limited_water, open_impulse, loads,
-         factors, factor_values, special, held, films, columns, roughness, lost_water, lost_solid,
-         rain, added_water, added_solid, next_liquid_id, tiles, sums, trouble] = state;
+         dt, flip_share, step, slack, frozen, limited_water, open_impulse, loads, factors,
+         factor_values, special, held, films, columns, roughness, lost_water, lost_solid, rain,
+         added_water, added_solid, next_liquid_id, tiles, sums, trouble] = state;
   auto& [start, initial_water, initial_solid, last] = memory;
 
   put_number(a, "time", time);

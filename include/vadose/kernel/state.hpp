@@ -157,8 +157,9 @@ struct StepOptions {
   Real damping = 0;             ///< local damping of the skeleton [-], in [0, 1)
   Real displacement_cap = 0.1;  ///< largest motion in a step, in cells
   Real dt_max = 1e30;           ///< largest step [s]
-  Real free_relaxation = 10;    ///< rate at which free points of a cell share its pressure [1/s]
-  int threads = 1;              ///< used where the host links OpenMP
+  /// Decay of what a free point's pressure differs from its cell's [1 / cell passed], >= 0.
+  Real free_relaxation = 3;
+  int threads = 1;  ///< used where the host links OpenMP
   /// Points that leave the box.
   Escape escaped = Escape::error;
   /// Of free water.
@@ -225,7 +226,6 @@ struct State {
   Real time = 0;           ///< [s]
   Real dt = 0;             ///< step in work [s]
   Real flip_share = 1;     ///< exp(-pic_rate dt) of a blending transfer [-]
-  Real free_memory = 1;    ///< exp(-free_relaxation dt) [-]
   std::int64_t step = 0;   ///< steps taken
   Real slack = 0;          ///< motion since the last sort [m]
   bool frozen = false;     ///< liquid state held while the skeleton settles

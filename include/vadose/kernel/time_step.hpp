@@ -143,7 +143,6 @@ template <class M>
 void begin_step(State<M>& state, Real dt) {
   state.dt = dt;
   if constexpr (M::Transfer::blends) state.flip_share = std::exp(-state.transfer.pic_rate * dt);
-  if constexpr (has_liquid<M>) state.free_memory = std::exp(-state.options.free_relaxation * dt);
   for (StepSums& s : state.sums) s = StepSums{};
   find_factors(state);
 }

@@ -425,8 +425,10 @@ VADOSE_INLINE void exchange_batch(State<M>& state, std::size_t b,
     points.store(field::liquid_pressure, b, pressures_at(state, cells, entries, x));
 }
 
-/// Free water: pressure by the rate of its cell, relaxed towards the cell's; volume from mass and
-/// pressure; exchange with the soil in proportion to mass.
+/// Free water: pressure by the rate of its cell; volume from mass and pressure; exchange with the soil
+/// in proportion to mass. What a point's pressure differs from its cell's grows as the points of a cell
+/// mix and would shake the surface (a falling column of water tore from 32 cells on): it is forgotten
+/// over a part of a cell on the point's way, and kept at rest.
 template <class M>
 VADOSE_INLINE void free_batch(State<M>& state, std::size_t b,
                               const CellFinder<State<M>::dim>& cells, const std::int32_t* entries,
@@ -437,7 +439,7 @@ VADOSE_INLINE void free_batch(State<M>& state, std::size_t b,
   double* pressure = points.at(field::liquid_pressure, b);
   double* volume = points.at(field::volume, b);
   const Real bulk_modulus = state.water.bulk_modulus;
-  const Real keep = state.free_memory;
+  const Real forgets = state.options.free_relaxation * state.dt / state.grid.cell_size();
   for (int l = 0; l < lane_count; ++l) {
     const std::int32_t owner = state.nodes.dof[static_cast<std::size_t>(entries[cells.index[l]])];
     if (owner < 0 || !(volume[l] > 0)) continue;
@@ -446,6 +448,12 @@ VADOSE_INLINE void free_batch(State<M>& state, std::size_t b,
     for (int d = 0; d < dim; ++d)
       at_rest += state.water.density * state.gravity[d] * (x[d][l] - cell.centroid[d]);
     if (cell.kind == CellKind::free) {
+      Real speed2 = 0;
+      for (int d = 0; d < dim; ++d) {
+        const Real v = points.at(field::velocity, b, d)[l];
+        speed2 += v * v;
+      }
+      const Real keep = 1 / (1 + forgets * std::sqrt(speed2));
       if (cell.solved)
         pressure[l] = at_rest + keep * (pressure[l] - at_rest) + cell.change;
       else if (!state.frozen)
@@ -491,6 +499,28 @@ void stop_at_ground(const State<M>& state, const TileFrame<State<M>::dim>& frame
     else
       at = next;
   }
+}
+
+/// A free point of a sliver moves with the edge of its pressure cell. A wall on the far side of its own
+/// cell is beyond what that edge knows of: towards it the point moves less, as if the cell had the
+/// velocity of the edge on one side and none on the other, and so never passes.
+template <class M>
+VADOSE_INLINE void keep_within_walls(const State<M>& state, const CellFinder<State<M>::dim>& cells,
+                                     const std::int32_t* entries, int slot,
+                                     const Lanes (&x)[State<M>::dim],
+                                     const Lanes (&inside)[State<M>::dim],
+                                     Lanes (&flux)[State<M>::dim]) noexcept {
+  constexpr int dim = State<M>::dim;
+  if (!state.nodes.near_sliver[static_cast<std::size_t>(slot)]) return;
+  for (int l = 0; l < lane_count; ++l)
+    for (int d = 0; d < dim; ++d) {
+      const Real beyond = x[d][l] - inside[d][l];
+      if (beyond == 0) continue;
+      const int node = cells.index[l] + (beyond > 0 ? BlockGrid<dim>::tile_stride(d) : 0);
+      if (state.nodes.node_flags[static_cast<std::size_t>(entries[node])] &
+          (node_flag::liquid_fixed << d))
+        flux[d].set(l, flux[d][l] * max(0.0, 1 - std::fabs(beyond) / state.grid.cell_size()));
+    }
 }
 
 /// One batch of liquid points: velocity from the liquid's nodes; pore water moves with the
@@ -550,6 +580,7 @@ VADOSE_INLINE void update_liquid_batch(State<M>& state, std::size_t b, int slot,
         for (int d = 0; d < dim; ++d) flux[d].set(l, q[d]);
       }
     }
+    keep_within_walls(state, cells, entries, slot, x, inside, flux);
     move(state, points, b, "liquid", flux, sums);
     return;
   }

@@ -32,7 +32,8 @@ struct SolverOptions {
   Real damping = 0;             ///< local damping of the skeleton [-], in [0, 1)
   Real displacement_cap = 0.1;  ///< largest motion in a step [cell size], in (0, 0.25]
   Real dt_max = 1e30;           ///< largest step [s], > 0
-  Real free_relaxation = 10;    ///< rate at which free points share their cell's pressure [1/s]
+  /// Decay of what a free point's pressure differs from its cell's [1 / cell passed], >= 0.
+  Real free_relaxation = 3;
   typename M::Transfer transfer = {};  ///< numbers of the velocity transfer
   int threads = 1;                     ///< >= 1; more than one only where the host links OpenMP
   Escape escaped = Escape::error;      ///< what happens to points that leave the box
@@ -49,7 +50,7 @@ struct SolverOptions {
       if (!(displacement_cap > 0 && displacement_cap <= 0.25))
         check::fail("displacement_cap", displacement_cap, "(0, 0.25]", "cell size");
       check::positive("dt_max", dt_max, "s");
-      check::non_negative("free_relaxation", free_relaxation, "1/s");
+      check::non_negative("free_relaxation", free_relaxation, "-");
       transfer.validate();
       check::within("threads", threads, 1, 1024, "-");
       check::in_context("resampling", [&] { resampling.validate(); });
