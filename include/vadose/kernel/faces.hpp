@@ -181,11 +181,52 @@ void inside_face(const State<M>& state, int axis, const Cell<State<M>::dim>& a,
   batch.gravity_head[l] = gravity_head(state, axis, distance);
 }
 
+/// The soil cell of the same material behind the one at an outer face, for where it has its pressure;
+/// null if there is none.
+template <class M>
+const Cell<State<M>::dim>* cell_behind(const CellView<M>& view, int axis,
+                                       const Cell<State<M>::dim>& soil, bool soil_below) noexcept {
+  const auto& nodes = view.state.nodes;
+  const auto& grid = view.state.grid;
+  const int inward = soil_below ? -1 : 1;
+  Index<State<M>::dim> place = view.cell;
+  if (soil_below) --place[axis];
+  for (int steps = 0; steps < 2; ++steps) {  // two where the first is a sliver of the same cell
+    place[axis] += inward;
+    if (place[axis] < 0 || place[axis] >= grid.cells()[axis]) return nullptr;
+    const std::int32_t entry = grid.entry(place);
+    if (entry == grid.outside()) return nullptr;
+    const std::int32_t owner = nodes.dof[static_cast<std::size_t>(entry)];
+    if (owner < 0) return nullptr;
+    const auto& cell = nodes.cell[static_cast<std::size_t>(owner)];
+    if (&cell == &soil) continue;
+    return cell.kind == CellKind::soil && cell.material == soil.material ? &cell : nullptr;
+  }
+  return nullptr;
+}
+
+/// Factor of the conductivity of a cell on the way to its outer face: porosity goes on changing there as
+/// from the cell behind, which makes k a power of the distance; its value half way counts. Where a
+/// drained surface has halved k within a cell, k of the cell would let out far too much: consolidation
+/// by 39 % then misses p by 3.7 % of the load, with this by 1.6 %.
+template <class M>
+Real outward_factor(const CellView<M>& view, int axis, const Cell<State<M>::dim>& soil,
+                    bool soil_below, Real distance) noexcept {
+  const auto* behind = cell_behind(view, axis, soil, soil_below);
+  if (!behind || !(behind->saturated_conductivity > 0) ||
+      behind->saturated_conductivity == soil.saturated_conductivity)
+    return 1;
+  const Real between = std::fabs(soil.centroid[axis] - behind->centroid[axis]);
+  return std::pow(soil.saturated_conductivity / behind->saturated_conductivity,
+                  0.5 * min(1.0, distance / between));
+}
+
 /// Face between soil and a held pressure (free water, an open surface or a wall) at x_face along
 /// the axis. Water that enters does so at S = 1.
 template <class M>
-void outer_face(const State<M>& state, int axis, const Cell<State<M>::dim>& soil,
+void outer_face(const CellView<M>& view, int axis, const Cell<State<M>::dim>& soil,
                 const Real (&at)[State<M>::dim], Real pressure, FaceFlux& face) {
+  const auto& state = view.state;
   const Real h = state.grid.cell_size();
   const Real distance = max(0.1 * h, std::fabs(at[axis] - soil.centroid[axis]));
   const Real inward = pressure - soil.pressure - hydrostatic(state, soil.centroid, at);
@@ -193,9 +234,11 @@ void outer_face(const State<M>& state, int axis, const Cell<State<M>::dim>& soil
   face.head_gradient = (face.soil_below ? inward : -inward) / distance;
   const bool enters = inward > 0;
   face.saturation = enters ? 1 : soil.saturation;
-  face.conductivity = face_conductivity(
-      state, soil.material, enters ? soil.saturated_conductivity : soil.conductivity, soil.pressure,
-      pressure, soil.porosity, gravity_head(state, axis, distance));
+  face.conductivity =
+      outward_factor(view, axis, soil, face.soil_below, distance) *
+      face_conductivity(state, soil.material,
+                        enters ? soil.saturated_conductivity : soil.conductivity, soil.pressure,
+                        pressure, soil.porosity, gravity_head(state, axis, distance));
   face.held_pressure = pressure;
 }
 
@@ -234,15 +277,16 @@ void rained_face(const State<M>& state, const Cell<State<M>::dim>& soil, bool we
 
 /// Face at a held pressure, at the given point of a wall or of the ground.
 template <class M>
-void held_face(const State<M>& state, int axis, const Cell<State<M>::dim>& soil,
+void held_face(const CellView<M>& view, int axis, const Cell<State<M>::dim>& soil,
                const Real (&at)[State<M>::dim], FaceFlux& face) {
+  const auto& state = view.state;
   const auto& held = state.held[static_cast<std::size_t>(face.held)];
   Vec<State<M>::dim> x;
   for (int d = 0; d < State<M>::dim; ++d) x[d] = at[d];
   Real p = held.pressure(x, state.time);
   const bool dry = held.kind == HeldKind::reservoir && p <= 0;
   if (dry) p = 0;
-  outer_face(state, axis, soil, at, p, face);
+  outer_face(view, axis, soil, at, p, face);
   face.one_way = dry || held.kind == HeldKind::outlet;
   if (face.one_way)
     face.thirsty = (face.soil_below ? face.head_gradient : -face.head_gradient) >= 0;
@@ -267,10 +311,10 @@ void surface_face(const State<M>& state, const CellView<M>& view, int axis,
   for (int d = 0; d < State<M>::dim; ++d) at[d] = soil.centroid[d];
   at[axis] += (face.soil_below ? 0.5 : -0.5) * min(1.5, soil.fill) * h;
   if (column || state.held[static_cast<std::size_t>(face.held)].kind == HeldKind::rain) {
-    outer_face(state, axis, soil, at, column ? film_pressure(state, *column) : 0, face);
+    outer_face(view, axis, soil, at, column ? film_pressure(state, *column) : 0, face);
     rained_face(state, soil, column != nullptr, face);
   } else {
-    held_face(state, axis, soil, at, face);
+    held_face(view, axis, soil, at, face);
   }
 }
 
@@ -286,7 +330,7 @@ void wall_face(const State<M>& state, const CellView<M>& view, int axis, int sid
   Real at[State<M>::dim];
   for (int d = 0; d < State<M>::dim; ++d) at[d] = soil.centroid[d];
   at[axis] = centre[axis];
-  held_face(state, axis, soil, at, face);
+  held_face(view, axis, soil, at, face);
 }
 
 /// Face between soil and free water.
@@ -298,7 +342,7 @@ void water_face(const State<M>& state, const CellView<M>& view, int axis,
   for (int d = 0; d < State<M>::dim; ++d) at[d] = soil.centroid[d];
   at[axis] = face_centre(view, axis)[axis];
   const Real p = max(0.0, free.pressure + hydrostatic(state, free.centroid, at));
-  outer_face(state, axis, soil, at, p, face);
+  outer_face(view, axis, soil, at, p, face);
 }
 
 /// The lower face of one cell along one axis.
