@@ -2,7 +2,7 @@
 # Helpers for the tests, examples and benchmarks of this repository. Nothing here reaches a host.
 include(CheckCXXCompilerFlag)
 find_package(OpenMP QUIET COMPONENTS CXX)
-check_cxx_compiler_flag(-march=native VADOSE_HAS_MARCH_NATIVE)
+check_cxx_compiler_flag("${VADOSE_NATIVE_FLAGS}" VADOSE_HAS_NATIVE_FLAGS)
 set(CMAKE_CXX_EXTENSIONS OFF)
 
 # Warnings as usage requirements, so that header checks get them too.
@@ -28,7 +28,7 @@ function(vadose_own_target target)
   if(TARGET OpenMP::OpenMP_CXX)
     target_link_libraries(${target} PRIVATE OpenMP::OpenMP_CXX)
   endif()
-  if(arg_NATIVE AND VADOSE_NATIVE AND VADOSE_HAS_MARCH_NATIVE)
-    target_compile_options(${target} PRIVATE -march=native)
+  if(arg_NATIVE AND VADOSE_NATIVE AND VADOSE_HAS_NATIVE_FLAGS)
+    target_compile_options(${target} PRIVATE ${VADOSE_NATIVE_FLAGS})
   endif()
 endfunction()

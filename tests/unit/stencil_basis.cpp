@@ -55,6 +55,7 @@ void check_batch(const BlockGrid<Dim>& grid, const std::array<Vec<Dim>, 8>& poin
   using Shape = typename Basis::policy;
   const int slot = grid.slot(grid.block_number(cell_at(grid, points[0])));
   Lanes x[Dim], l[Dim];
+  for (int d = 0; d < Dim; ++d) x[d] = l[d] = Lanes(0.0);
   for (int d = 0; d < Dim; ++d)
     for (int p = 0; p < lane_count; ++p) {
       x[d].set(p, points[static_cast<std::size_t>(p)][d]);
