@@ -55,12 +55,15 @@ void check_batch(const BlockGrid<Dim>& grid, const std::array<Vec<Dim>, 8>& poin
   using Shape = typename Basis::policy;
   const int slot = grid.slot(grid.block_number(cell_at(grid, points[0])));
   Lanes x[Dim], l[Dim];
-  for (int d = 0; d < Dim; ++d) x[d] = l[d] = Lanes(0.0);
-  for (int d = 0; d < Dim; ++d)
+  for (int d = 0; d < Dim; ++d) {
+    alignas(64) double place[lane_count], size[lane_count];
     for (int p = 0; p < lane_count; ++p) {
-      x[d].set(p, points[static_cast<std::size_t>(p)][d]);
-      l[d].set(p, half[static_cast<std::size_t>(p)][d]);
+      place[p] = points[static_cast<std::size_t>(p)][d];
+      size[p] = half[static_cast<std::size_t>(p)][d];
     }
+    x[d] = Lanes::load(place);
+    l[d] = Lanes::load(size);
+  }
   vadose::kernel::Stencil<Shape, Dim> stencil;
   stencil.evaluate(vadose::kernel::tile_frame(grid, slot), x, l);
   const Real h = grid.cell_size();
