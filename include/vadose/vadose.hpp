@@ -101,10 +101,12 @@
 #include <vadose/solver/assemble.hpp>
 #include <vadose/solver/escaped_points.hpp>
 #include <vadose/solver/estimate.hpp>
+#include <vadose/solver/forecast.hpp>
 #include <vadose/solver/gather_films.hpp>
 #include <vadose/solver/release_films.hpp>
 #include <vadose/solver/report.hpp>
 #include <vadose/solver/scheme.hpp>
 #include <vadose/solver/solver.hpp>
+#include <vadose/solver/spells.hpp>
 #include <vadose/solver/two_phase_solver.hpp>
 #include <vadose/solver/walls.hpp>

@@ -17,7 +17,8 @@ using vd::Real;
 using Column = vadose_test::Seepage<vd::Uniaxial>;
 using S = vd::Solver<Column>;
 
-S column(Real saturation) {
+/// Soil without any condition.
+vd::Scene<Column> dry_sky(Real saturation) {
   vd::Scene<Column> scene({.box = {{0.0}, {1.0}}, .cell_size = 0.05});
   scene.gravity[0] = -9.81;
   scene.liquid.bulk_modulus = 1e6;
@@ -28,6 +29,10 @@ S column(Real saturation) {
                   .retention = {.a = 3},
                   .conductivity = {.saturated_conductivity = 1e-4}},
                  {.saturation = saturation});
+  return scene;
+}
+S column(Real saturation) {
+  auto scene = dry_sky(saturation);
   scene.add(vd::bc::Rain{.rate = 1e-5});
   return S(scene);
 }
@@ -106,6 +111,46 @@ TEST_CASE("embedding: the estimate goes on with the trend of the step, down to i
   const StepTrend none = StepTrend::of(even);
   CHECK(none.power == 0);
   CHECK(none.steps(5, 105, floor) == doctest::Approx(1e4).epsilon(0.02));
+}
+
+TEST_CASE("embedding: the estimate knows when rain and switched conditions come and go") {
+  const auto spells_of = [](const vd::bc::Rain& rain) {
+    auto scene = dry_sky(0.5);
+    scene.add(rain);
+    scene.add(vd::bc::Drained{.face = vd::Face::bottom, .active = [](Real t) { return t > 7; }});
+    return vd::detail::find_spells(S(scene).state(), 10);
+  };
+  // Rain that stops, starts, grows by a tenth and threefold; the drain opens.
+  const auto spells =
+      spells_of({.table = {{0, 1e-4}, {1.2345, 0}, {4, 1e-4}, {5, 1.1e-4}, {6, 3e-4}}});
+  const Real starts[] = {0, 1.2345, 4, 6, 7};
+  const bool wetter[] = {true, false, true, true, true},
+             drains[] = {false, true, false, false, false};
+  REQUIRE(spells.size() == 5);
+  for (std::size_t i = 0; i < 5; ++i) {
+    CHECK(spells[i].start == doctest::Approx(starts[i]).epsilon(1e-6));
+    CHECK(spells[i].end == (i < 4 ? spells[i + 1].start : 10));
+    CHECK(spells[i].wetter == wetter[i]);
+    CHECK(spells[i].drains == drains[i]);
+  }
+  // Rain like a wave makes no more than eight.
+  CHECK(spells_of({.function = [](Real t) { return 1e-4 * (1 + std::sin(50 * t)); }}).size() <= 8);
+}
+
+TEST_CASE("embedding: the estimate tries what begins later, and lets the ground drain") {
+  auto scene = dry_sky(0.3);
+  scene.add(vd::bc::Rain{.function = [](Real t) { return t > 100 && t < 200 ? 1e-2 : 0.0; }});
+  const S solver(scene);
+  const vd::Estimate dry = solver.estimate(99, 0), rain = solver.estimate(200, 0.2),
+                     after = solver.estimate(1000, 0.2);
+  CHECK(dry.steps > 0);
+  CHECK(rain.steps > 2 * dry.steps);
+  CHECK(rain.steps <= static_cast<std::int64_t>(200 / rain.shortest_dt));
+  // Wet soil below dry ground is not stiffer than soil under a pond.
+  const Real drained = vd::detail::shortest_step(solver.state(), false);
+  CHECK(drained >= rain.shortest_dt);
+  CHECK(after.steps > rain.steps);
+  CHECK(solver.steps() == 0);
 }
 
 TEST_CASE("embedding: no step of a wet column is below the floor of the estimate") {

@@ -85,6 +85,11 @@ struct StepTrend {
     return {std::exp(mean_y), std::exp(mean_x), std::max(power, -2.0)};
   }
 
+  /// Step at time t where none is shorter than `floor`.
+  Real at(Real t, Real floor) const {
+    return std::max(power == 0 ? level : level * std::pow(t / origin, power), floor);
+  }
+
   /// Steps from time `from` to `to` where none is shorter than `floor`; real number.
   Real steps(Real from, Real to, Real floor) const {
     if (!(to > from) || !(level > 0)) return 0;
@@ -97,10 +102,11 @@ struct StepTrend {
   }
 };
 
-/// Step of the explicit scheme when all soil is saturated and water stands on it [s], with the cells
-/// cut by the ground as now; 0 in models without water, which do not become wetter.
+/// Step of the explicit scheme when all soil is saturated and water stands on it [s]; 0 in models
+/// without water, which do not become wetter. `cut`: as short as the cells cut by the ground make it
+/// now; without, those cells have drained.
 template <class M>
-Real shortest_step(const State<M>& state) {
+Real shortest_step(const State<M>& state, bool cut = true) {
   if constexpr (!has_liquid<M>) {
     return 0;
   } else {
@@ -109,7 +115,7 @@ Real shortest_step(const State<M>& state) {
     Real dt = 2 / std::sqrt(kernel::seepage_frequency2(modulus, rho, h));  // also of free water
     if constexpr (has_skeleton<M>) {
       Real share = 1;
-      for (std::size_t i = 0; i + Block<State<M>::dim>::cells < state.nodes.cell.size(); ++i)
+      for (std::size_t i = 0; cut && i + Block<State<M>::dim>::cells < state.nodes.cell.size(); ++i)
         if (state.nodes.dof[i] == static_cast<std::int32_t>(i) &&
             state.nodes.cell[i].kind == CellKind::soil)
           share = std::min(share, kernel::step_share(state.nodes.cell[i]));

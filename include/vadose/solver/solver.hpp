@@ -5,7 +5,6 @@
 /// The solver: owns the state of a run; the host owns the loop.
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <string>
 #include <type_traits>
@@ -16,6 +15,7 @@
 #include <vadose/solver/assemble.hpp>
 #include <vadose/solver/escaped_points.hpp>
 #include <vadose/solver/estimate.hpp>
+#include <vadose/solver/forecast.hpp>
 #include <vadose/solver/gather_films.hpp>
 #include <vadose/solver/release_films.hpp>
 #include <vadose/solver/report.hpp>
@@ -212,43 +212,19 @@ class Solver {
     return b;
   }
 
-  /// Cost of a run to time t_end [s]. It runs a copy for `trial_seconds` of wall time, or to the end
-  /// if that comes first, and takes the pace of the second half of it for the rest. The step goes on
-  /// as in the trial: soil that wets shortens it, down to the step of a scene that is wet throughout.
-  /// What has not begun in the trial (rain that starts later, a slide) is not in the estimate.
+  /// Cost of a run to time t_end [s]. A copy runs for `trial_seconds` of wall time, or to the end if
+  /// that comes first; its pace is taken for the rest. The step goes on as in the trial: soil that wets
+  /// shortens it, down to the step of a scene that is wet throughout. Rain that starts, grows or stops
+  /// and conditions that are switched later are known from their functions: a copy tries what brings
+  /// more water, with its clock put forward. A slide that begins after the trial is not in the estimate.
   Estimate estimate(Real t_end, Real trial_seconds = 1) const {
-    using Clock = std::chrono::steady_clock;
-    const auto start = Clock::now();
-    Solver copy = *this;
-    const auto now = [&] {
-      return detail::TrialMark{std::chrono::duration<Real>(Clock::now() - start).count(),
-                               copy.time(), copy.steps()};
-    };
-    std::vector<detail::TrialMark> marks{now()};
     Estimate e;
-    while (copy.time() < t_end && (marks.size() < 5 || marks.back().wall < trial_seconds)) {
-      const StepReport report = copy.step(t_end);
-      if (report.status != Status::ok) break;
-      if (copy.time() < t_end || e.limit == StepLimit::none) e.limit = report.limit;
-      marks.push_back(now());
-    }
     e.solid_points = state_.solid.size();
     e.liquid_points = state_.liquid.size();
     e.blocks = static_cast<std::size_t>(state_.grid.slots());
     e.megabytes = 1e-6 * static_cast<Real>(memory_bytes());
-    if (marks.size() < 2) return e;
-    const detail::TrialMark first = marks.front(), last = marks.back(),
-                            middle = marks[(marks.size() - 1) / 2];
-    const auto half = static_cast<Real>(last.step - middle.step);
-    detail::StepTrend trend = detail::StepTrend::of(marks);
-    e.dt = (last.time - middle.time) / half;
-    if constexpr (std::is_same_v<Scheme, scheme::Explicit>)
-      e.shortest_dt = std::min(detail::shortest_step(copy.state_), e.dt);
-    if (!(e.shortest_dt > 0)) trend = {.level = e.dt};
-    e.trend = trend.power;
-    const Real rest = trend.steps(last.time, t_end, e.shortest_dt);
-    e.steps = last.step - first.step + static_cast<std::int64_t>(std::ceil(rest - 1e-9));
-    e.seconds = last.wall - first.wall + rest * (last.wall - middle.wall) / half;
+    detail::Forecast<Solver>(*this, t_end, trial_seconds, std::is_same_v<Scheme, scheme::Explicit>)
+        .report(e);
     return e;
   }
 
