@@ -46,7 +46,8 @@ void add_liquid_conditions(vadose::Scene<M>& scene, bool printed) {
                                     .function = [](Real t) { return t < 0.02 ? 0.25 : 0.15; }});
 }
 
-/// Soil 0.4 m high, water above it in 1D and beside it else.
+/// Soil 0.4 m high, water above it in 1D and beside it else; none beside it where `printed`, as explicit
+/// drag tears the few grains at the edge of the soil away with the water within a few steps.
 template <class M>
 vadose::Scene<M> any_scene(bool printed = false) {
   using vadose::Real;
@@ -84,8 +85,9 @@ vadose::Scene<M> any_scene(bool printed = false) {
     scene.liquid.bulk_modulus = 1e6;
     Vec<dim> drift = Vec<dim>::Zero();
     if (dim > 1) drift[0] = 1.5;
-    scene.add_water(vadose::box<dim>(water_low, water_top),
-                    {.surface_level = water_top[up], .velocity = drift});
+    if (!printed || dim == 1 || !vadose::has_skeleton<M>)
+      scene.add_water(vadose::box<dim>(water_low, water_top),
+                      {.surface_level = water_top[up], .velocity = drift});
   }
   return scene;
 }
