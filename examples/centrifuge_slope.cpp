@@ -49,67 +49,37 @@ constexpr Real scale = 30;                             // of the centrifuge
 
 enum class Scheme { explicit_steps, semi_implicit };
 
-struct Choices {
-  Real cell_size = 0.02;      // [m]
-  Real bulk_modulus = 2.2e7;  // of the water [Pa]
-  Real end_time = 20;         // after the start of the rain [s]
-  Real drag_gravity = 30;     // g in Eq. 2 over 9.81 m/s2
-  Real courant = 0.5;         // [-]
-  Real damping = 0.05;        // local, of the skeleton [-]
-  Real pic_rate = 1;          // [1/s]
+struct Choices : example::RunChoices {
+  Real cell_size = 0.02;   // [m]
+  Real drag_gravity = 30;  // g in Eq. 2 over 9.81 m/s2
   Real saturation_step = 0.002;
-  int points_per_axis = 2, frames = 20, threads = 1;
+  int points_per_axis = 2;
   Scheme scheme = Scheme::explicit_steps;
-  vd::law::Cone cone = vd::law::Cone::outer;
   bool three_dimensional = false, frozen_porosity = false, resume = false;
-  std::string output = ".";
-};
 
-constexpr const char* usage =
-    "centrifuge_slope: rain on a slope of silty sand at 30 g, [Zhan] 4.4\n"
-    "  --cell-size H        cells of H m that divide 1 and 0.4 m (0.02)\n"
-    "  --points-per-axis N  of a cell, for each phase: 4 points per cell for 2 (2)\n"
-    "  --three-dimensional  one cell thick, 8 points per cell\n"
-    "  --scheme S           explicit or semi-implicit (explicit)\n"
-    "  --bulk-modulus K     of the water in Pa (2.2e7; water has 2.2e9)\n"
-    "  --end-time T         s of model time after the rain starts (20)\n"
-    "  --drag-gravity N     g in Eq. 2 as a multiple of 9.81 m/s2 (30)\n"
-    "  --cone C             outer, inner, plane-strain or inscribed (outer)\n"
-    "  --frozen-porosity    S(s) and k(S) at the initial porosity\n"
-    "  --damping A          local damping of the skeleton, in [0, 1) (0.05)\n"
-    "  --courant C          part of the stable step (0.5)\n"
-    "  --pic-rate R         relaxation of point velocities to the grid's in 1/s (1)\n"
-    "  --saturation-step D  change of S that a semi-implicit step aims at (0.002)\n"
-    "  --paper              cells of 0.01 m, 2.2e9 Pa, 100 s: days\n"
-    "  --frames N           states written as VTK files, each with a checkpoint (20)\n"
-    "  --resume             go on from the checkpoint in the output folder\n"
-    "  --threads N          needs OpenMP and as many idle processors (1)\n"
-    "  --output DIR         folder for the results (.)\n"
-    "  --help               this text\n";
+  Choices()
+      : RunChoices{
+            .end_time = 20, .bulk_modulus = 2.2e7, .frames = 20, .cone = vd::law::Cone::outer} {}
+};
 
 Choices read(int count, char** words) {
   Choices c;
-  example::Flags(usage)
-      .number("--cell-size", c.cell_size)
-      .number("--bulk-modulus", c.bulk_modulus)
-      .number("--end-time", c.end_time)
-      .number("--drag-gravity", c.drag_gravity)
-      .number("--courant", c.courant)
-      .number("--damping", c.damping)
-      .number("--pic-rate", c.pic_rate)
-      .number("--saturation-step", c.saturation_step)
-      .whole("--points-per-axis", c.points_per_axis, 8)
-      .whole("--frames", c.frames, 10000)
-      .whole("--threads", c.threads, 1024)
+  example::Flags("centrifuge_slope: rain on a slope of silty sand at 30 g, [Zhan] 4.4")
+      .number("--cell-size", "H", c.cell_size, "cells of H m that divide 1 and 0.4 m")
+      .whole("--points-per-axis", c.points_per_axis, 8, "of a cell, for each phase")
+      .on("--three-dimensional", c.three_dimensional, "one cell thick, 8 points per cell")
       .choice<Scheme>(
           "--scheme", c.scheme,
           {{"explicit", Scheme::explicit_steps}, {"semi-implicit", Scheme::semi_implicit}})
-      .cone(c.cone)
-      .on("--three-dimensional", c.three_dimensional)
-      .on("--frozen-porosity", c.frozen_porosity)
-      .on("--resume", c.resume)
-      .preset("--paper", [&] { c.cell_size = 0.01, c.bulk_modulus = 2.2e9, c.end_time = 100; })
-      .word("--output", c.output)
+      .number("--drag-gravity", "N", c.drag_gravity, "g in Eq. 2 as a multiple of 9.81 m/s2")
+      .on("--frozen-porosity", c.frozen_porosity, "S(s) and k(S) at the initial porosity")
+      .number("--saturation-step", "D", c.saturation_step,
+              "change of S that a semi-implicit step aims at")
+      .preset(
+          "--paper", [&] { c.cell_size = 0.01, c.bulk_modulus = 2.2e9, c.end_time = 100; },
+          "cells of 0.01 m, 2.2e9 Pa, 100 s: days")
+      .on("--resume", c.resume, example::resume_text)
+      .common(c)
       .read(count, words);
   vd::check::positive("--end-time", c.end_time, "s");
   vd::check::positive("--drag-gravity", c.drag_gravity, "-");

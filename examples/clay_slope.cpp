@@ -44,60 +44,28 @@ constexpr Real foundation = 5, height = 7, crest_x = 10, toe_x = 21, length = 36
 constexpr Real top = foundation + height;
 constexpr Real solid_density = 2800, liquid_density = 1000, porosity = 0.4;  // [kg/m3], [-]
 
-struct Choices {
+struct Choices : example::RunChoices {
   Real cell_size = 0.5;       // [m]
   Real conductivity = 0.082;  // k_sat [m/s]
-  Real bulk_modulus = 2.2e8;  // of the water [Pa]
   Real suction = 5e5;         // at the surface [Pa]
-  Real end_time = 10;         // after the start of the rain [s]
-  Real courant = 0.5;         // [-]
-  Real damping = 0.05;        // local, of the skeleton [-]
-  Real pic_rate = 1;          // [1/s]
-  int points_per_cell = 4, frames = 20, threads = 1;
-  vd::law::Cone cone = vd::law::Cone::plane_strain_matched;
+  int points_per_cell = 4;
   bool rigid = false, resume = false;
-  std::string output = ".";
-};
 
-constexpr const char* usage =
-    "clay_slope: rain on a slope of sandy clay, [Zhan] 4.5\n"
-    "  --cell-size H        cells of H m that divide 36 and 14 m (0.5)\n"
-    "  --points-per-cell N  of each phase: 1, 4, 9, ... (4)\n"
-    "  --conductivity K     k_sat in m/s (0.082; printed: 5)\n"
-    "  --suction S          at the surface at the start in Pa (5e5)\n"
-    "  --bulk-modulus K     of the water in Pa (2.2e8; water has 2.2e9)\n"
-    "  --end-time T         s of model time after the rain starts (10)\n"
-    "  --rigid              the soil does not move: seepage alone\n"
-    "  --cone C             outer, inner, plane-strain or inscribed (plane-strain)\n"
-    "  --damping A          local damping of the skeleton, in [0, 1) (0.05)\n"
-    "  --courant C          part of the stable step (0.5)\n"
-    "  --pic-rate R         relaxation of point velocities to the grid's in 1/s (1)\n"
-    "  --paper              2.2e9 Pa, 280 s\n"
-    "  --frames N           states written as VTK files, each with a checkpoint (20)\n"
-    "  --resume             go on from the checkpoint in the output folder\n"
-    "  --threads N          needs OpenMP and as many idle processors (1)\n"
-    "  --output DIR         folder for the results (.)\n"
-    "  --help               this text\n";
+  Choices() : RunChoices{.end_time = 10, .bulk_modulus = 2.2e8, .frames = 20} {}
+};
 
 Choices read(int count, char** words) {
   Choices c;
-  example::Flags(usage)
-      .number("--cell-size", c.cell_size)
-      .number("--conductivity", c.conductivity)
-      .number("--suction", c.suction)
-      .number("--bulk-modulus", c.bulk_modulus)
-      .number("--end-time", c.end_time)
-      .number("--courant", c.courant)
-      .number("--damping", c.damping)
-      .number("--pic-rate", c.pic_rate)
-      .whole("--points-per-cell", c.points_per_cell, 64)
-      .whole("--frames", c.frames, 10000)
-      .whole("--threads", c.threads, 1024)
-      .cone(c.cone)
-      .on("--rigid", c.rigid)
-      .on("--resume", c.resume)
-      .preset("--paper", [&] { c.bulk_modulus = 2.2e9, c.end_time = 280; })
-      .word("--output", c.output)
+  example::Flags("clay_slope: rain on a slope of sandy clay, [Zhan] 4.5")
+      .number("--cell-size", "H", c.cell_size, "cells of H m that divide 36 and 14 m")
+      .whole("--points-per-cell", c.points_per_cell, 64, "of each phase: 1, 4, 9, ...")
+      .number("--conductivity", "K", c.conductivity, "k_sat in m/s; printed: 5")
+      .number("--suction", "S", c.suction, "at the surface at the start in Pa")
+      .on("--rigid", c.rigid, "the soil does not move: seepage alone")
+      .preset(
+          "--paper", [&] { c.bulk_modulus = 2.2e9, c.end_time = 280; }, "2.2e9 Pa, 280 s")
+      .on("--resume", c.resume, example::resume_text)
+      .common(c)
       .read(count, words);
   vd::check::positive("--end-time", c.end_time, "s");
   return c;

@@ -33,57 +33,27 @@ using vd::Real;
 
 constexpr Real solid_density = 2670, porosity = 0.48;  // [kg/m3], [-]
 
-struct Choices {
+struct Choices : example::RunChoices {
   std::string ground = "examples/data/hillside.asc";
-  Real cell_size = 1;         // [m]
-  Real end_time = 10;         // after the start of the rain [s]
-  Real rate = 0.04;           // of the rain [m/s]
-  Real conductivity = 0.08;   // k_sat [m/s]
-  Real suction = 9.2e3;       // at the start [Pa]
-  Real bulk_modulus = 2.2e7;  // of the water [Pa]
-  Real courant = 0.45;        // [-]
-  Real damping = 0.05;        // local, of the skeleton [-]
-  int frames = 5, threads = 1;
-  vd::law::Cone cone = vd::law::Cone::plane_strain_matched;
+  Real cell_size = 1;        // [m]
+  Real rate = 0.04;          // of the rain [m/s]
+  Real conductivity = 0.08;  // k_sat [m/s]
+  Real suction = 9.2e3;      // at the start [Pa]
   bool resume = false;
-  std::string output = ".";
-};
 
-constexpr const char* usage =
-    "hillside_rain: rain on a three-dimensional slope from a height grid\n"
-    "  --ground FILE        ESRI ASCII grid of heights in m (examples/data/hillside.asc)\n"
-    "  --cell-size H        cells of H m that divide the sides of the grid (1)\n"
-    "  --end-time T         s of model time after the rain starts (10)\n"
-    "  --rain R             m/s per horizontal area (0.04)\n"
-    "  --conductivity K     k_sat in m/s (0.08)\n"
-    "  --suction S          at the start in Pa (9200)\n"
-    "  --bulk-modulus K     of the water in Pa (2.2e7; water has 2.2e9)\n"
-    "  --cone C             outer, inner, plane-strain or inscribed (plane-strain)\n"
-    "  --courant C          part of the stable step (0.45)\n"
-    "  --damping A          local damping of the skeleton, in [0, 1) (0.05)\n"
-    "  --frames N           states written as VTK files, each with a checkpoint (5)\n"
-    "  --resume             go on from the checkpoint in the output folder\n"
-    "  --threads N          needs OpenMP and as many idle processors (1)\n"
-    "  --output DIR         folder for the results (.)\n"
-    "  --help               this text\n";
+  Choices() : RunChoices{.end_time = 10, .bulk_modulus = 2.2e7, .courant = 0.45, .frames = 5} {}
+};
 
 Choices read(int count, char** words) {
   Choices c;
-  example::Flags(usage)
-      .word("--ground", c.ground)
-      .number("--cell-size", c.cell_size)
-      .number("--end-time", c.end_time)
-      .number("--rain", c.rate)
-      .number("--conductivity", c.conductivity)
-      .number("--suction", c.suction)
-      .number("--bulk-modulus", c.bulk_modulus)
-      .number("--courant", c.courant)
-      .number("--damping", c.damping)
-      .whole("--frames", c.frames, 10000)
-      .whole("--threads", c.threads, 1024)
-      .cone(c.cone)
-      .on("--resume", c.resume)
-      .word("--output", c.output)
+  example::Flags("hillside_rain: rain on a three-dimensional slope from a height grid")
+      .word("--ground", "FILE", c.ground, "ESRI ASCII grid of heights in m")
+      .number("--cell-size", "H", c.cell_size, "cells of H m that divide the sides of the grid")
+      .number("--rain", "R", c.rate, "m/s per horizontal area")
+      .number("--conductivity", "K", c.conductivity, "k_sat in m/s")
+      .number("--suction", "S", c.suction, "at the start in Pa")
+      .on("--resume", c.resume, example::resume_text)
+      .common(c)
       .read(count, words);
   vd::check::positive("--end-time", c.end_time, "s");
   return c;
@@ -121,7 +91,10 @@ vd::Solver<Hillside> start(const Choices& c, const vd::HeightField& ground) {
   for (const auto face : {vd::Face::left, vd::Face::right, vd::Face::front, vd::Face::back})
     scene.add(vd::bc::Roller{.face = face});
   return vd::Solver<Hillside>{scene,
-                              {.courant = c.courant, .damping = c.damping, .threads = c.threads}};
+                              {.courant = c.courant,
+                               .damping = c.damping,
+                               .transfer = {.pic_rate = c.pic_rate},
+                               .threads = c.threads}};
 }
 
 int run(const Choices& c) {

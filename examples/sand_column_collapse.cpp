@@ -47,47 +47,19 @@ constexpr Real solid_density = 2800, liquid_density = 1000;             // [kg/m
 constexpr Real porosity = 0.4;                                          // [-]
 constexpr Real contents[] = {0, 0.25, 0.5, 1, 1.5, 2, 2.5, 3, 3.5, 4};  // of the sweep [%]
 
-struct Choices {
+struct Choices : example::RunChoices {
   Real height = 0.08, length = 0.07;  // H0, L0 [m]
   Real water_content = 1;             // w [%]
   Real cell_size = 0.0025;            // [m]
   Real friction_angle = 35;           // [degrees]
-  Real end_time = 0.5;                // [s]
-  Real bulk_modulus = 2.2e9;          // of the water [Pa]
   Real young_modulus = 5e6;           // of the skeleton [Pa]
   Real poisson_ratio = 0.33;          // [-]
-  Real courant = 0.5;                 // [-]
-  Real damping = 0.05;                // local, of the skeleton [-]
-  Real pic_rate = 1;                  // relaxation of point velocities to the grid's [1/s]
   Real base_friction = vd::unset;     // [-]; unset: rough
-  int points_per_cell = 4, frames = 10, threads = 1;
-  vd::law::Cone cone = vd::law::Cone::plane_strain_matched;
+  int points_per_cell = 4;
   bool sweep = false, check = false;
-  std::string output = ".";
-};
 
-constexpr const char* usage =
-    "sand_column_collapse: collapse of a column of moist sand, [Zhan] 4.3\n"
-    "  --water-content W    by weight in % (1)\n"
-    "  --sweep              water contents of 0 to 4 %, each in a folder of its own\n"
-    "  --height H, --length L  of the column in m (0.08, 0.07)\n"
-    "  --cell-size H        cells of H m (0.0025)\n"
-    "  --points-per-cell N  of each phase: 1, 4, 9, ... (4)\n"
-    "  --end-time T         s of model time (0.5)\n"
-    "  --damping A          local damping of the skeleton, in [0, 1) (0.05)\n"
-    "  --base-friction MU   Coulomb friction of the base (rough)\n"
-    "  --cone C             outer, inner, plane-strain or inscribed (plane-strain)\n"
-    "  --young-modulus E    of the sand in Pa (5e6; Table 2: 5e7)\n"
-    "  --friction-angle PHI in degrees (35)\n"
-    "  --rods               the dry column of aluminium rods of Bui et al. (2008)\n"
-    "  --bulk-modulus K     of the water in Pa (2.2e9)\n"
-    "  --courant C          part of the stable step (0.5)\n"
-    "  --pic-rate R         relaxation of point velocities to the grid's in 1/s (1)\n"
-    "  --frames N           states written as VTK files (10)\n"
-    "  --threads N          needs OpenMP and as many idle processors (1)\n"
-    "  --output DIR         folder for the results (.)\n"
-    "  --check              dry and moist in 5 mm cells, compared with bounds: seconds\n"
-    "  --help               this text\n";
+  Choices() : RunChoices{.end_time = 0.5} {}
+};
 
 // 0.2 x 0.1 m of rods of 1 and 1.5 mm; the front came to rest about 0.43 m from the wall.
 void rods(Choices& c) {
@@ -103,27 +75,20 @@ void rods(Choices& c) {
 
 Choices read(int count, char** words) {
   Choices c;
-  example::Flags(usage)
-      .number("--water-content", c.water_content)
-      .number("--height", c.height)
-      .number("--length", c.length)
-      .number("--cell-size", c.cell_size)
-      .number("--end-time", c.end_time)
-      .number("--bulk-modulus", c.bulk_modulus)
-      .number("--young-modulus", c.young_modulus)
-      .number("--friction-angle", c.friction_angle)
-      .number("--courant", c.courant)
-      .number("--damping", c.damping)
-      .number("--pic-rate", c.pic_rate)
-      .number("--base-friction", c.base_friction)
-      .whole("--points-per-cell", c.points_per_cell, 64)
-      .whole("--frames", c.frames, 10000)
-      .whole("--threads", c.threads, 1024)
-      .cone(c.cone)
-      .on("--sweep", c.sweep)
-      .on("--check", c.check)
-      .preset("--rods", [&] { rods(c); })
-      .word("--output", c.output)
+  example::Flags("sand_column_collapse: collapse of a column of moist sand, [Zhan] 4.3")
+      .number("--water-content", "W", c.water_content, "by weight in %")
+      .on("--sweep", c.sweep, "water contents of 0 to 4 %, each in a folder of its own")
+      .number("--height", "H", c.height, "of the column in m")
+      .number("--length", "L", c.length, "of the column in m")
+      .number("--cell-size", "H", c.cell_size, "cells of H m")
+      .whole("--points-per-cell", c.points_per_cell, 64, "of each phase: 1, 4, 9, ...")
+      .number("--base-friction", "MU", c.base_friction, "Coulomb friction of the base (rough)")
+      .number("--young-modulus", "E", c.young_modulus, "of the sand in Pa; Table 2: 5e7")
+      .number("--friction-angle", "PHI", c.friction_angle, "in degrees")
+      .preset(
+          "--rods", [&] { rods(c); }, "the dry column of aluminium rods of Bui et al. (2008)")
+      .on("--check", c.check, "dry and moist in 5 mm cells, compared with bounds: seconds")
+      .common(c)
       .read(count, words);
   vd::check::positive("--height", c.height, "m");
   vd::check::positive("--length", c.length, "m");

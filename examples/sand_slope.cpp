@@ -21,13 +21,11 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <cstdlib>
-#include <exception>
 #include <filesystem>
-#include <iterator>
 #include <string>
 #include <vector>
 
+#include <examples/support/flags.hpp>
 #include <vadose/vadose.hpp>
 
 namespace vd = vadose;
@@ -43,106 +41,27 @@ using vd::Real;
 
 constexpr Real foundation = 0.1, crest_x = 0.3, crest_y = 0.3, toe_x = 0.5;  // [m]
 
-struct Choices {
-  Real cell_size = 0.02;      // [m]
-  Real bulk_modulus = 2.2e7;  // of the water [Pa]
-  Real end_time = 1.5;        // after the start of the rain [s]
-  Real courant = 0.5;         // [-]
-  Real damping = 0.05;        // local, of the skeleton [-]
-  Real pic_rate = 1;          // relaxation of point velocities to the grid's [1/s]
-  Real points_per_cell = 4;   // of each phase
-  Real threads = 1;           // more pay only where every one has a processor to itself
-  Real frames = 30;           // VTK files after the first
-  vd::law::Cone cone = vd::law::Cone::outer;
+struct Choices : example::RunChoices {
+  Real cell_size = 0.02;         // [m]
+  int points_per_cell = 4;       // of each phase
   bool frozen_porosity = false;  // retention and conductivity at the initial porosity
-  std::string output = ".";
+
+  Choices()
+      : RunChoices{
+            .end_time = 1.5, .bulk_modulus = 2.2e7, .frames = 30, .cone = vd::law::Cone::outer} {}
 };
-
-constexpr const char* usage =
-    "sand_slope: rain on a slope of silty sand at 30 g, [Zhan] 4.4\n"
-    "  --cell-size H        cells of H m that divide 1 and 0.4 m (0.02)\n"
-    "  --points-per-cell N  of each phase: 1, 4, 9, ... (4)\n"
-    "  --bulk-modulus K     of the water in Pa (2.2e7; water has 2.2e9)\n"
-    "  --end-time T         s of model time after the rain starts (1.5)\n"
-    "  --cone C             outer, inner, plane-strain or inscribed (outer)\n"
-    "  --courant C          part of the stable step (0.5)\n"
-    "  --damping A          local damping of the skeleton, in [0, 1) (0.05)\n"
-    "  --pic-rate R         relaxation of point velocities to the grid's in 1/s (1)\n"
-    "  --frozen-porosity    S(s) and k(S) at the initial porosity\n"
-    "  --paper              cells of 0.01 m, 2.2e9 Pa, 100 s: days\n"
-    "  --frames N           states written as VTK files (30)\n"
-    "  --threads N          needs OpenMP and as many idle processors (1)\n"
-    "  --output DIR         folder for the results (.)\n"
-    "  --help               this text\n";
-
-Real number(const std::string& flag, const char* text) {
-  char* end = nullptr;
-  const Real value = text ? std::strtod(text, &end) : vd::unset;
-  if (!text || end == text || *end != '\0' || !vd::is_finite(value))
-    throw vd::SetupError(flag + " needs a number" +
-                         (text ? ", not '" + std::string(text) + "'" : ""));
-  return value;
-}
-
-int whole(const char* flag, Real value, Real limit) {
-  if (!(value >= 1 && value <= limit && value == std::floor(value)))
-    throw vd::SetupError(flag + std::string(" needs a whole number from 1 to ") +
-                         std::to_string(static_cast<int>(limit)));
-  return static_cast<int>(value);
-}
-
-vd::law::Cone cone(const char* text) {
-  using vd::law::Cone;
-  const std::string word = text ? text : "";
-  if (word == "outer") return Cone::outer;
-  if (word == "inner") return Cone::inner;
-  if (word == "plane-strain") return Cone::plane_strain_matched;
-  if (word == "inscribed") return Cone::inscribed;
-  throw vd::SetupError("--cone needs outer, inner, plane-strain or inscribed, not '" + word + "'");
-}
 
 Choices read(int count, char** words) {
   Choices c;
-  const struct {
-    const char* flag;
-    Real* value;
-  } numbers[] = {{"--cell-size", &c.cell_size},
-                 {"--points-per-cell", &c.points_per_cell},
-                 {"--bulk-modulus", &c.bulk_modulus},
-                 {"--end-time", &c.end_time},
-                 {"--courant", &c.courant},
-                 {"--damping", &c.damping},
-                 {"--pic-rate", &c.pic_rate},
-                 {"--frames", &c.frames},
-                 {"--threads", &c.threads}};
-  for (int i = 1; i < count; ++i) {
-    const std::string flag = words[i];
-    const char* next = i + 1 < count ? words[i + 1] : nullptr;
-    const auto* found = std::find_if(std::begin(numbers), std::end(numbers),
-                                     [&](const auto& n) { return flag == n.flag; });
-    if (found != std::end(numbers)) {
-      *found->value = number(flag, next);
-      ++i;
-    } else if (flag == "--cone") {
-      c.cone = cone(next);
-      ++i;
-    } else if (flag == "--output") {
-      if (!next) throw vd::SetupError("--output needs a folder");
-      c.output = next;
-      ++i;
-    } else if (flag == "--frozen-porosity") {
-      c.frozen_porosity = true;
-    } else if (flag == "--paper") {
-      c.cell_size = 0.01;
-      c.bulk_modulus = 2.2e9;
-      c.end_time = 100;
-    } else if (flag == "--help") {
-      std::fputs(usage, stdout);
-      std::exit(0);
-    } else {
-      throw vd::SetupError("unknown flag '" + flag + "'; --help lists them");
-    }
-  }
+  example::Flags("sand_slope: rain on a slope of silty sand at 30 g, [Zhan] 4.4")
+      .number("--cell-size", "H", c.cell_size, "cells of H m that divide 1 and 0.4 m")
+      .whole("--points-per-cell", c.points_per_cell, 64, "of each phase: 1, 4, 9, ...")
+      .on("--frozen-porosity", c.frozen_porosity, "S(s) and k(S) at the initial porosity")
+      .preset(
+          "--paper", [&] { c.cell_size = 0.01, c.bulk_modulus = 2.2e9, c.end_time = 100; },
+          "cells of 0.01 m, 2.2e9 Pa, 100 s: days")
+      .common(c)
+      .read(count, words);
   vd::check::positive("--end-time", c.end_time, "s");
   return c;
 }
@@ -173,7 +92,7 @@ vd::Solver<SandSlope> start(const Choices& c) {
   const auto slope = vd::polygon(
       {{0, 0}, {1.0, 0}, {1.0, foundation}, {toe_x, foundation}, {crest_x, crest_y}, {0, crest_y}});
   scene.add_soil(slope, silty_sand(c),
-                 {.points_per_cell = whole("--points-per-cell", c.points_per_cell, 64),
+                 {.points_per_cell = c.points_per_cell,
                   .suction = 9.2e3,  // [Pa]
                   .initial_stress = vd::InitialStress::geostatic});
   scene.add(vd::bc::Fixed{.face = vd::Face::bottom});
@@ -183,7 +102,7 @@ vd::Solver<SandSlope> start(const Choices& c) {
                                {.courant = c.courant,
                                 .damping = c.damping,
                                 .transfer = {.pic_rate = c.pic_rate},
-                                .threads = whole("--threads", c.threads, 1024)}};
+                                .threads = c.threads}};
 }
 
 // What is measured, besides whole states and balances. Within a cell the pressure is read as that
@@ -257,14 +176,14 @@ void write_choices(const Choices& c) {
                         {"pic_rate", "1/s"},
                         {"cone", "-"},
                         {"frozen_porosity", "-"}}};
-  file.add({c.cell_size, c.points_per_cell, c.bulk_modulus, c.end_time, c.courant, c.damping,
-            c.pic_rate, static_cast<Real>(c.cone), static_cast<Real>(c.frozen_porosity)});
+  file.add({c.cell_size, static_cast<Real>(c.points_per_cell), c.bulk_modulus, c.end_time,
+            c.courant, c.damping, c.pic_rate, static_cast<Real>(c.cone),
+            static_cast<Real>(c.frozen_porosity)});
 }
 
 void run(const Choices& c) {
-  const int frames = whole("--frames", c.frames, 10000);
   vd::Solver<SandSlope> solver = start(c);
-  std::printf("cells %g m, water of K = %g Pa, %g s of rain, %g thread(s)\n", c.cell_size,
+  std::printf("cells %g m, water of K = %g Pa, %g s of rain, %d thread(s)\n", c.cell_size,
               c.bulk_modulus, c.end_time, c.threads);
   if (c.bulk_modulus < 2.2e9)
     std::printf("the water is %g times softer than water; --bulk-modulus 2.2e9 is the real one\n",
@@ -274,7 +193,6 @@ void run(const Choices& c) {
   spin_up(solver);
   solver.add(vd::bc::ZeroSuction{});
   vd::io::print_preflight(stdout, solver, c.end_time);
-  std::printf("  (in dry soil; steps shorten when it is wet)\n");
   std::fflush(stdout);
 
   vd::io::VtkSeries vtk{c.output + "/slope",
@@ -286,8 +204,8 @@ void run(const Choices& c) {
   vd::io::Progress progress{c.end_time};
   const vd::io::RunClock clock{solver};
   constexpr int records = 8;  // rows of the histories per frame
-  for (int i = 0; i <= frames * records; ++i) {
-    vd::io::advance(solver, c.end_time * i / (frames * records), progress);
+  for (int i = 0; i <= c.frames * records; ++i) {
+    vd::io::advance(solver, c.end_time * i / (c.frames * records), progress);
     gauge.record(solver);
     balance.record(solver);
     run_out.record(solver);
@@ -298,13 +216,9 @@ void run(const Choices& c) {
 
 }  // namespace
 
-int main(int count, char** words) try {
-  run(read(count, words));
-  return 0;
-} catch (const vd::SetupError& e) {
-  std::fprintf(stderr, "sand_slope: %s\n", e.what());
-  return 2;
-} catch (const std::exception& e) {  // InstabilityError: the files hold the states before it
-  std::fprintf(stderr, "sand_slope: %s\n", e.what());
-  return 1;
+int main(int count, char** words) {
+  return example::guarded("sand_slope", [&] {
+    run(read(count, words));
+    return 0;
+  });
 }

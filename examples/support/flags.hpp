@@ -20,55 +20,84 @@ namespace example {
 
 using vadose::Real;
 
-/// Flags by name. read() raises SetupError on an unknown flag or a value that does not fit.
+/// What the long examples let their users choose alike; each has defaults of its own.
+struct RunChoices {
+  Real end_time = 1;          ///< [s]
+  Real bulk_modulus = 2.2e9;  ///< of the water [Pa]
+  Real courant = 0.5;         ///< [-]
+  Real damping = 0.05;        ///< local, of the skeleton [-]
+  Real pic_rate = 1;          ///< relaxation of point velocities to the grid's [1/s]
+  int frames = 10;            ///< states written after the first
+  int threads = 1;            ///< more pay only where every one has a processor to itself
+  vadose::law::Cone cone = vadose::law::Cone::plane_strain_matched;
+  std::string output = ".";  ///< folder of the results
+};
+
+/// Of the flag --resume.
+inline constexpr const char* resume_text = "go on from the checkpoint in the output folder";
+
+/// Flags by name, each with a word for its value and a line for --help, which shows its default too.
+/// read() raises SetupError on an unknown flag or a value that does not fit.
 class Flags {
  public:
-  /// `usage` is what --help prints.
-  explicit Flags(const char* usage) : usage_(usage) {}
+  /// `about`: the program in a line.
+  explicit Flags(std::string about) : usage_(std::move(about) + '\n') {}
 
-  Flags& number(const std::string& flag, Real& value) {
-    return add(flag, true, [&value, flag](const std::string& text) { value = parse(flag, text); });
+  Flags& number(const std::string& flag, const char* word, Real& value, const std::string& text) {
+    return add(flag, word, text, vadose::is_finite(value) ? shown(value) : "",
+               [&value, flag](const std::string& given) { value = parse(flag, given); });
   }
   /// A whole number in [1, limit].
-  Flags& whole(const std::string& flag, int& value, int limit) {
-    return add(flag, true, [&value, flag, limit](const std::string& text) {
-      const Real given = parse(flag, text);
+  Flags& whole(const std::string& flag, int& value, int limit, const std::string& text) {
+    return add(flag, "N", text, std::to_string(value), [&value, flag, limit](const std::string& s) {
+      const Real given = parse(flag, s);
       if (!(given >= 1 && given <= limit && given == std::floor(given)))
         throw vadose::SetupError(flag + " needs a whole number from 1 to " + std::to_string(limit));
       value = static_cast<int>(given);
     });
   }
-  Flags& word(const std::string& flag, std::string& value) {
-    return add(flag, true, [&value](const std::string& text) { value = text; });
+  Flags& word(const std::string& flag, const char* word, std::string& value,
+              const std::string& text) {
+    return add(flag, word, text, value, [&value](const std::string& given) { value = given; });
   }
   /// One of some words.
   template <class T>
   Flags& choice(const std::string& flag, T& value, const std::map<std::string, T>& words) {
-    return add(flag, true, [&value, flag, words](const std::string& text) {
+    std::string allowed, now;
+    for (const auto& [name, meaning] : words) {
+      allowed += (allowed.empty() ? "" : ", ") + name;
+      if (meaning == value) now = name;
+    }
+    return add(flag, "WORD", allowed, now, [&value, flag, words, allowed](const std::string& text) {
       const auto found = words.find(text);
-      if (found != words.end()) {
-        value = found->second;
-        return;
-      }
-      std::string allowed;
-      for (const auto& entry : words) allowed += (allowed.empty() ? "" : ", ") + entry.first;
-      throw vadose::SetupError(flag + " needs one of " + allowed + ", not '" + text + "'");
+      if (found == words.end())
+        throw vadose::SetupError(flag + " needs one of " + allowed + ", not '" + text + "'");
+      value = found->second;
     });
   }
-  Flags& cone(vadose::law::Cone& value) {
-    using vadose::law::Cone;
-    return choice<Cone>("--cone", value,
-                        {{"outer", Cone::outer},
-                         {"inner", Cone::inner},
-                         {"plane-strain", Cone::plane_strain_matched},
-                         {"inscribed", Cone::inscribed}});
-  }
-  Flags& on(const std::string& flag, bool& value) {
-    return add(flag, false, [&value](const std::string&) { value = true; });
+  Flags& on(const std::string& flag, bool& value, const std::string& text) {
+    return add(flag, "", text, "", [&value](const std::string&) { value = true; });
   }
   /// A flag that sets several values at once.
-  Flags& preset(const std::string& flag, std::function<void()> set) {
-    return add(flag, false, [set = std::move(set)](const std::string&) { set(); });
+  Flags& preset(const std::string& flag, std::function<void()> set, const std::string& text) {
+    return add(flag, "", text, "", [set = std::move(set)](const std::string&) { set(); });
+  }
+  /// Those of all long examples.
+  Flags& common(RunChoices& c) {
+    using vadose::law::Cone;
+    return number("--bulk-modulus", "K", c.bulk_modulus, "of the water in Pa; water has 2.2e9")
+        .number("--end-time", "T", c.end_time, "s of model time")
+        .choice<Cone>("--cone", c.cone,
+                      {{"outer", Cone::outer},
+                       {"inner", Cone::inner},
+                       {"plane-strain", Cone::plane_strain_matched},
+                       {"inscribed", Cone::inscribed}})
+        .number("--damping", "A", c.damping, "local damping of the skeleton, in [0, 1)")
+        .number("--courant", "C", c.courant, "part of the stable step")
+        .number("--pic-rate", "R", c.pic_rate, "relaxation of velocities to the grid's in 1/s")
+        .whole("--frames", c.frames, 10000, "states written as VTK files")
+        .whole("--threads", c.threads, 1024, "needs OpenMP and as many idle processors")
+        .word("--output", "DIR", c.output, "folder for the results");
   }
 
   /// Reads the command line; --help prints the usage and ends the program.
@@ -76,7 +105,7 @@ class Flags {
     for (int i = 1; i < count; ++i) {
       const std::string flag = words[i];
       if (flag == "--help") {
-        std::fputs(usage_, stdout);
+        std::fputs((usage_ + line("--help", "this text")).c_str(), stdout);
         std::exit(0);
       }
       const auto found = known_.find(flag);
@@ -94,10 +123,21 @@ class Flags {
     std::function<void(const std::string&)> set;
   };
 
-  Flags& add(const std::string& flag, bool takes_value,
-             std::function<void(const std::string&)> set) {
-    known_[flag] = {takes_value, std::move(set)};
+  Flags& add(const std::string& flag, const std::string& word, const std::string& text,
+             const std::string& now, std::function<void(const std::string&)> set) {
+    usage_ +=
+        line(word.empty() ? flag : flag + ' ' + word, now.empty() ? text : text + " (" + now + ')');
+    known_[flag] = {!word.empty(), std::move(set)};
     return *this;
+  }
+  static std::string line(const std::string& flag, const std::string& text) {
+    const std::size_t gap = flag.size() < 20 ? 21 - flag.size() : 1;
+    return "  " + flag + std::string(gap, ' ') + text + '\n';
+  }
+  static std::string shown(Real value) {
+    char text[32];
+    std::snprintf(text, sizeof text, "%g", value);
+    return text;
   }
   static Real parse(const std::string& flag, const std::string& text) {
     char* end = nullptr;
@@ -107,7 +147,7 @@ class Flags {
     return value;
   }
 
-  const char* usage_;
+  std::string usage_;
   std::map<std::string, Flag> known_;
 };
 
