@@ -9,16 +9,7 @@ set -eu
 cd "$(dirname "$0")/.."
 . ./cmake/prepare.sh
 
-short=
-for argument in "$@"; do
-  case "$argument" in
-    --short) short=--short ;;
-    *)
-      printf 'usage: sh benchmarks/report.sh [--short]\n' >&2
-      exit 2
-      ;;
-  esac
-done
+read_options short "$@"
 
 require_packages
 offer_pictures
@@ -31,7 +22,7 @@ rm -f "$results"/*
 # Two programs at a time.
 run_two() {
   for program in "$@"; do
-    "$build/benchmarks/report_$program" "--out=$results" $short \
+    "$build/benchmarks/report_$program" "--out=$results" ${short:+--short} \
       "--benchmark_out=$results/$program.json" >"$results/$program.log" 2>&1 &
     eval "pid_$program=$!"
   done

@@ -9,18 +9,9 @@ set -eu
 cd "$(dirname "$0")/.."
 . ./cmake/prepare.sh
 
+read_options "short compile" "$@"
 filter=.
-compile=
-for argument in "$@"; do
-  case "$argument" in
-    --short) filter=points:100000/ ;;
-    --compile) compile=yes ;;
-    *)
-      printf 'usage: sh benchmarks/speed.sh [--short] [--compile]\n' >&2
-      exit 2
-      ;;
-  esac
-done
+if [ -n "$short" ]; then filter=points:100000/; fi
 
 require_packages
 offer_pictures
@@ -32,7 +23,7 @@ mkdir -p "$results"
 rm -f "$results"/*
 say "agreement of the library with the straightforward implementation"
 "$build/benchmarks/speed_naive" --check || fail "agreement"
-for program in dry saturated unsaturated free_water kernels naive; do
+for program in dry saturated unsaturated presets kernels naive; do
   say "$program"
   "$build/benchmarks/speed_$program" "--benchmark_filter=$filter|kernel" \
     "--benchmark_out=$results/$program.json" --benchmark_out_format=json \

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-# Read by tests/run.sh and examples/run.sh (POSIX sh, from the repository root): installs what is
+# Read by the scripts that build and run (POSIX sh, from the repository root): installs what is
 # missing on Debian 12, Ubuntu 24.04 or newer and configures a release build in $build.
 # CXX chooses the compiler (default g++).
 
@@ -14,6 +14,23 @@ have_header() {
     [ -f "$prefix/$1" ] && return 0
   done
   return 1
+}
+
+# read_options <names> <argument>...: sets the variable of every name to yes or, where --name is not
+# among the arguments, to nothing; stops at any other argument.
+read_options() {
+  names=$1
+  shift
+  for name in $names; do eval "$name="; done
+  for argument in "$@"; do
+    case " $names " in
+      *" ${argument#--} "*) eval "${argument#--}=yes" ;;
+      *)
+        printf '%s: options are%s\n' "$0" "$(printf ' --%s' $names)" >&2
+        exit 2
+        ;;
+    esac
+  done
 }
 
 # The newest Debian and Ubuntu name all packages alike.

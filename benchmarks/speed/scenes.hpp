@@ -33,15 +33,20 @@ struct Unsaturated : vadose::UnsaturatedModel<K> {
   using Shape = S;
   using Skeleton = vadose::law::DruckerPrager;
 };
+/// Soil that stays where it is: seepage alone.
 template <class K>
-struct FreeWater : vadose::FreeWaterModel<K> {};
+struct Seepage : vadose::UnsaturatedModel<K> {
+  using Skeleton = vadose::law::Rigid;
+};
 
 /// Silty sand of [Zhan] Table 2, with cohesion that lets the block stand.
 template <class M>
 vadose::Material<M> soil() {
   vadose::Material<M> m;
-  m.solid_density = 2650;
+  if constexpr (!vadose::is_rigid<M>) m.solid_density = 2650;
   m.porosity = 0.4;
+  if constexpr (requires { m.skeleton.young_modulus; })
+    m.skeleton = {.young_modulus = 10e6, .poisson_ratio = 0.3};
   if constexpr (requires { m.skeleton.elastic; }) {
     m.skeleton.elastic = {.young_modulus = 10e6, .poisson_ratio = 0.3};
     m.skeleton.friction_angle = vadose::degrees(35);
@@ -85,16 +90,19 @@ vadose::Scene<M> scene(const Layout& layout) {
   if constexpr (!vadose::has_skeleton<M>) {
     scene.add_water(body, {.jitter = layout.jitter, .surface_level = high[dim - 1]});
   } else {
-    vadose::SoilOptions<dim> options{.jitter = layout.jitter,
-                                     .initial_stress = vadose::InitialStress::geostatic,
-                                     .lateral_stress_ratio = 0.43};
+    vadose::SoilOptions<dim> options{.jitter = layout.jitter};
+    if constexpr (!vadose::is_rigid<M>) {
+      options.initial_stress = vadose::InitialStress::geostatic;
+      options.lateral_stress_ratio = 0.43;
+    }
     if constexpr (vadose::is_unsaturated<M>)
       options.suction = 10e3;
     else if constexpr (vadose::has_liquid<M>)
       options.water_table = high[dim - 1];
     scene.add_soil(body, soil<M>(), options);
   }
-  if constexpr (vadose::has_skeleton<M>) scene.add(vadose::bc::Fixed{.face = vadose::Face::bottom});
+  if constexpr (vadose::is_deformable<M>)
+    scene.add(vadose::bc::Fixed{.face = vadose::Face::bottom});
   if constexpr (vadose::has_skeleton<M> && vadose::has_liquid<M>)
     scene.add(vadose::bc::ZeroSuction{});
   return scene;

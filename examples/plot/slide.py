@@ -12,7 +12,8 @@ import sys
 
 import numpy as np
 
-from slope import plt, read_csv, read_points, read_series
+from slope import (draw_field, draw_water, finish, mean_of_cells, plt, read_csv, read_points,
+                   read_series)
 
 SCENES = {
     "centrifuge": {"outline": [(0, 0.3), (0.3, 0.3), (0.5, 0.1), (1, 0.1)], "unit": "mm",
@@ -22,42 +23,10 @@ SCENES = {
 }
 
 
-def mean_by_cell(values, positions, cell):
-    """Every point's value replaced by the mean of its cell."""
-    cells = np.floor(positions[:, :2] / cell).astype(np.int64)
-    _, number = np.unique(cells, axis=0, return_inverse=True)
-    number = number.ravel()
-    return (np.bincount(number, values) / np.bincount(number))[number]
-
-
-def draw(states, scene, value, label, limits, colours, path):
-    """One panel per state."""
-    width = scene["outline"][-1][0]
-    figure, axes = plt.subplots(2, 2, figsize=(12, 0.9 + 10.4 * scene["height"] / width),
-                                sharex=True, sharey=True)
-    figure.subplots_adjust(left=0.055, right=0.89, bottom=0.12, top=0.96, wspace=0.07, hspace=0.12)
-    start = states[0][1]["Points"][:, :2] - states[0][1].get("displacement", np.zeros((1, 3)))[:, :2]
-    spacing = float(f"{2 * start[:, 0].min():.2g}")  # the first points are half of it from the wall
-    for axis, (time, points) in zip(axes.flat, states):
-        axis.set_aspect("equal")
-        axis.set_xlim(0, width)
-        axis.set_ylim(0, scene["height"])
-        figure.canvas.draw()
-        edge = axis.transData.transform([(0, 0), (spacing, 0)])
-        size = 1.2 * (edge[1, 0] - edge[0, 0]) * 72 / figure.dpi
-        drawn = axis.scatter(points["Points"][:, 0], points["Points"][:, 1], c=value(points, spacing),
-                             s=size ** 2, marker="s", linewidths=0, cmap=colours, vmin=limits[0],
-                             vmax=limits[1])
-        axis.plot(*zip(*scene["outline"]), "--", color="0.35", linewidth=0.9)
-        axis.text(0.98, 0.93, f"t = {time:.3g} s", transform=axis.transAxes, ha="right", va="top")
-    for axis in axes[1]:
-        axis.set_xlabel("x [m]")
-    for axis in axes[:, 0]:
-        axis.set_ylabel("y [m]")
-    bar = figure.colorbar(drawn, cax=figure.add_axes([0.905, 0.14, 0.018, 0.8]), extend="max")
-    bar.set_label(label)
-    figure.savefig(path)
-    plt.close(figure)
+def spacing_of(points):
+    """Distance of the points at the start: the first are half of it from the wall."""
+    start = points["Points"][:, :2] - points.get("displacement", np.zeros((1, 3)))[:, :2]
+    return float(f"{2 * start[:, 0].min():.2g}")
 
 
 def draw_history(folder, base, scene, path):
@@ -80,17 +49,10 @@ def draw_history(folder, base, scene, path):
         if name.endswith(".suction"):
             axes[1].plot(gauges["time"], 1e-3 * gauges[name], label=name[:-8].replace("_", " "))
     axes[1].set_ylabel("suction [kPa]")
-    axes[2].plot(balance["time"], balance["water_inflow"], label="inflow")
-    axes[2].plot(balance["time"], balance["water_outflow"], label="outflow")
-    axes[2].plot(balance["time"], balance["pore_water"], label="stored")
-    axes[2].set_ylabel("water [kg per m]")
-    axes[2].set_xlabel("time since the rain started [s]")
-    for axis in axes:
-        axis.grid(color="0.9")
+    draw_water(axes[2], balance)
     for axis in axes[1:]:
         axis.legend(frameon=False, fontsize=9)
-    figure.savefig(path)
-    plt.close(figure)
+    finish(figure, axes, slide["time"], path)
 
 
 def main():
@@ -106,19 +68,25 @@ def main():
               [series[i] for i in (last // 4, last // 2, 3 * last // 4, last)])
     states = [(time, read_points(file)) for time, file in chosen]
 
-    def suction(points, spacing):
-        return mean_by_cell(1e-3 * points["suction"], points["Points"], 2 * spacing)
+    spacing = spacing_of(states[0][1])
+
+    def draw(name, value, label, limits, colours):
+        draw_field(states, scene["outline"], scene["height"], value, label, limits, colours,
+                   os.path.join(target, f"{base}_{name}.png"), spacing)
+
+    def displacement(points):
+        return scene["factor"] * np.linalg.norm(points["displacement"], axis=1)
+
+    def suction(points):
+        return mean_of_cells(1e-3 * points["suction"], points["Points"], 2 * spacing)
 
     if "displacement" in states[0][1]:
-        def displacement(points, _):
-            return scene["factor"] * np.linalg.norm(points["displacement"], axis=1)
-
-        largest = max(np.percentile(displacement(states[-1][1], 0), 99), 1e-9)
-        draw(states, scene, displacement, f"displacement [{scene['unit']}]", (0, largest), "viridis",
-             os.path.join(target, f"{base}_displacement.png"))
+        largest = max(np.percentile(displacement(states[-1][1]), 99), 1e-9)
+        draw("displacement", displacement, f"displacement [{scene['unit']}]", (0, largest, True),
+             "viridis")
         draw_history(folder, base, scene, os.path.join(target, f"{base}_history.png"))
-    draw(states, scene, suction, "suction, mean of each cell [kPa]", (0, scene["suction"]),
-         "viridis_r", os.path.join(target, f"{base}_suction.png"))
+    draw("suction", suction, "suction, mean of each cell [kPa]", (0, scene["suction"], True),
+         "viridis_r")
     print("pictures in", os.path.abspath(target))
 
 

@@ -61,24 +61,24 @@ def mean_of_cells(values, positions, cell_size):
     return (np.bincount(cell, values) / np.bincount(cell))[cell]
 
 
-def draw_field(states, value, label, limits, colours, path, spacing):
-    """One panel per state, points coloured by value(points)."""
-    width, height = 1.0, 0.34  # of what is shown [m]
-    figure, axes = plt.subplots(2, 2, figsize=(12, 4.9), sharex=True, sharey=True)
+def draw_field(states, outline, top, value, label, limits, colours, path, spacing):
+    """One panel per state up to the height `top`, points coloured by value(points); the outline is that
+    of the start, from left to right."""
+    width = outline[-1][0]
+    figure, axes = plt.subplots(2, 2, figsize=(12, 1.35 + 10.4 * top / width), sharex=True, sharey=True)
     figure.subplots_adjust(left=0.055, right=0.89, bottom=0.11, top=0.95, wspace=0.07, hspace=0.16)
-    start = [(0, 0.3), (0.3, 0.3), (0.5, 0.1), (width, 0.1)]
     for axis, (time, points) in zip(axes.flat, states):
         axis.set_aspect("equal")
         axis.set_xlim(0, width)
-        axis.set_ylim(0, height)
+        axis.set_ylim(0, top)
         figure.canvas.draw()
         scale = axis.transData.transform([(0, 0), (spacing, 0)])
         size = 1.2 * (scale[1, 0] - scale[0, 0]) * 72 / figure.dpi
         x, y = points["Points"][:, 0], points["Points"][:, 1]
         drawn = axis.scatter(x, y, c=value(points), s=size**2, marker="s", linewidths=0,
                              cmap=colours, vmin=limits[0], vmax=limits[1])
-        axis.plot(*zip(*start), color="0.35", linewidth=0.9, linestyle="--")
-        axis.text(0.98, 0.9, f"t = {time:.2f} s", transform=axis.transAxes, ha="right", va="top")
+        axis.plot(*zip(*outline), color="0.35", linewidth=0.9, linestyle="--")
+        axis.text(0.98, 0.9, f"t = {time:.3g} s", transform=axis.transAxes, ha="right", va="top")
     for axis in axes[1]:
         axis.set_xlabel("x [m]")
     for axis in axes[:, 0]:
@@ -86,6 +86,23 @@ def draw_field(states, value, label, limits, colours, path, spacing):
     bar = figure.colorbar(drawn, cax=figure.add_axes([0.905, 0.13, 0.018, 0.8]),
                           extend="max" if limits[2] else "neither")
     bar.set_label(label)
+    figure.savefig(path)
+    plt.close(figure)
+
+
+def draw_water(axis, balance):
+    """What came, went and is there, over time; the last of the panels of a history."""
+    axis.plot(balance["time"], balance["water_inflow"], label="inflow")
+    axis.plot(balance["time"], balance["water_outflow"], label="outflow")
+    axis.plot(balance["time"], balance["pore_water"], label="stored")
+    axis.set_ylabel("water [kg per m]")
+    axis.set_xlabel("time since the rain started [s]")
+
+
+def finish(figure, axes, time, path):
+    for axis in axes:
+        axis.grid(color="0.9")
+        axis.set_xlim(0, time[-1])
     figure.savefig(path)
     plt.close(figure)
 
@@ -113,17 +130,10 @@ def draw_history(folder, path):
     axes[1].axhline(0, color="0.6", linewidth=0.8)
     axes[1].set_ylabel("liquid pressure [kPa]")
 
-    axes[2].plot(balance["time"], balance["water_inflow"], label="inflow")
-    axes[2].plot(balance["time"], balance["water_outflow"], label="outflow")
-    axes[2].plot(balance["time"], balance["pore_water"], label="stored")
-    axes[2].set_ylabel("water [kg per m]")
-    axes[2].set_xlabel("time since the rain started [s]")
+    draw_water(axes[2], balance)
     for axis in axes:
-        axis.grid(color="0.9")
         axis.legend(frameon=False, fontsize=10.5)
-        axis.set_xlim(0, time[-1])
-    figure.savefig(path)
-    plt.close(figure)
+    finish(figure, axes, time, path)
 
 
 def pick(series):
@@ -156,7 +166,8 @@ def main():
             ("suction", suction, "suction, mean of each cell [kPa]", (0, 10, True), "viridis_r"),
             ("saturation", saturation, "degree of saturation [-]", (0.2, 1, False), "YlGnBu")):
         path = os.path.join(target, f"slope_{name}.png")
-        draw_field(states, value, label, limits, colours, path, spacing)
+        draw_field(states, [(0, 0.3), (0.3, 0.3), (0.5, 0.1), (1, 0.1)], 0.34, value, label, limits,
+                   colours, path, spacing)
     draw_history(folder, os.path.join(target, "slope_history.png"))
     print("pictures in", os.path.abspath(target))
 
