@@ -4,7 +4,9 @@
 
 #include <doctest/doctest.h>
 
+#include <chrono>
 #include <cmath>
+#include <cstdlib>
 #include <cstring>
 #include <map>
 #include <random>
@@ -268,10 +270,16 @@ namespace {
 
 /// Reactions to damaged files.
 struct FuzzCount {
-  int refused = 0, accepted = 0;
+  int tried = 0, refused = 0, accepted = 0;
 };
 
-/// Writes damaged copies of a file and takes them up: each is refused with InputError and leaves the
+/// Seconds that the environment asks each fuzzing to go on for; 0 by default.
+Real fuzz_seconds() {
+  const char* given = std::getenv("VADOSE_FUZZ_SECONDS");
+  return given ? std::strtod(given, nullptr) : 0;
+}
+
+/// Writes damaged copies of a file, at least so many, and takes them up: each is refused with InputError and leaves the
 /// solver as it was, or is taken and the solver can step. `repair`: the checksums are made good again,
 /// so that the damage reaches the values.
 template <class S>
@@ -284,7 +292,9 @@ FuzzCount fuzz(S run, int files, unsigned seed, bool repair) {
   std::mt19937 random(seed);
   const auto below = [&](std::size_t n) { return random() % n; };
   FuzzCount count;
-  for (int i = 0; i < files; ++i) {
+  using Clock = std::chrono::steady_clock;
+  const auto end = Clock::now() + std::chrono::duration<Real>(fuzz_seconds());
+  for (int i = 0; i < files || Clock::now() < end; ++i) {
     std::string bad = good;
     const int kind = static_cast<int>(below(5));
     if (kind == 0 && !repair) {
@@ -320,6 +330,7 @@ FuzzCount fuzz(S run, int files, unsigned seed, bool repair) {
       if (bad == good) continue;
     }
     write_bytes(directory / "bad", bad);
+    ++count.tried;
     S solver = run;
     try {
       vd::io::load_checkpoint(directory / "bad", solver);
@@ -345,9 +356,12 @@ void check_fuzz(int files) {
                   hostile2 = fuzz(large, files / 10, 3, true);
   CHECK(hostile.refused > files / 10);
   CHECK(hostile2.refused > 0);
-  MESSAGE("damaged: ", damaged.refused, " refused; hostile with good checksums: ", hostile.refused,
-          " and ", hostile2.refused, " refused, ", hostile.accepted, " and ", hostile2.accepted,
-          " taken");
+  const auto text = [](const FuzzCount& c) {
+    return std::to_string(c.tried) + " tried, " + std::to_string(c.refused) + " refused, " +
+           std::to_string(c.accepted) + " taken";
+  };
+  MESSAGE("damaged: ", text(damaged), "; hostile with good checksums: ", text(hostile), "; ",
+          text(hostile2));
 }
 
 }  // namespace
