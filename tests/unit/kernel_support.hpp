@@ -22,6 +22,8 @@
 #include <vadose/policy/shape/quadratic_b_spline.hpp>
 #include <vadose/solver/solver.hpp>
 
+#include "../changed_model.hpp"
+
 namespace kernel_test {
 
 using vadose::Index;
@@ -254,28 +256,15 @@ inline bool same_bits(const std::vector<double>& a, const std::vector<double>& b
 // ---------------------------------------------------------------------------------------------
 // Models and materials.
 
-/// A preset with other policies; the preset itself where they are its own, as that is compiled already.
-template <class Preset, class Law, class Tr, class Sh>
-struct Changed : Preset {
-  using Skeleton = Law;
-  using Transfer = Tr;
-  using Shape = Sh;
-};
-template <class Preset, class Law, class Tr, class Sh>
-using With = std::conditional_t<std::is_same_v<Law, typename Preset::Skeleton> &&
-                                    std::is_same_v<Tr, typename Preset::Transfer> &&
-                                    std::is_same_v<Sh, typename Preset::Shape>,
-                                Preset, Changed<Preset, Law, Tr, Sh>>;
-
 template <class K, class Law = vadose::law::LinearElastic, class Tr = vadose::transfer::Flip,
           class Sh = vadose::shape::Gimp>
-using Dry = With<vadose::DryModel<K>, Law, Tr, Sh>;
+using Dry = vadose_test::With<vadose::DryModel<K>, Law, Tr, Sh>;
 template <class K, class Law = vadose::law::LinearElastic, class Tr = vadose::transfer::Flip,
           class Sh = vadose::shape::Gimp>
-using Saturated = With<vadose::SaturatedModel<K>, Law, Tr, Sh>;
+using Saturated = vadose_test::With<vadose::SaturatedModel<K>, Law, Tr, Sh>;
 template <class K, class Law = vadose::law::LinearElastic, class Tr = vadose::transfer::Flip,
           class Sh = vadose::shape::Gimp>
-using Unsaturated = With<vadose::UnsaturatedModel<K>, Law, Tr, Sh>;
+using Unsaturated = vadose_test::With<vadose::UnsaturatedModel<K>, Law, Tr, Sh>;
 
 /// A soft soil; a Drucker-Prager one slides and yields in these tests.
 template <class M>

@@ -10,6 +10,8 @@
 #include <vadose/policy/transfer/transfer.hpp>
 #include <vadose/solver/scheme.hpp>
 
+#include "../changed_model.hpp"
+
 namespace verify {
 
 /// Numerical choices of a run; the physics is the case's.
@@ -29,18 +31,9 @@ struct Variant {
   }
 };
 
-template <class Physics, class V>
-struct Changed : Physics {
-  using Shape = typename V::Shape;
-  using Transfer = typename V::Transfer;
-};
-
-/// A model of the physics of `Physics` with the choices of a variant; `Physics` itself where these
-/// are its own, as that is compiled already.
+/// A model of the physics of `Physics` with the choices of a variant.
 template <class Physics, class V>
 using With =
-    std::conditional_t<std::is_same_v<typename Physics::Shape, typename V::Shape> &&
-                           std::is_same_v<typename Physics::Transfer, typename V::Transfer>,
-                       Physics, Changed<Physics, V>>;
+    vadose_test::With<Physics, typename Physics::Skeleton, typename V::Transfer, typename V::Shape>;
 
 }  // namespace verify
