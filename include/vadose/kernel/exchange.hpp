@@ -240,11 +240,19 @@ void limit_donors(State<M>& state) {
 /// in the last digits of the masses of their points, and at rest always to one side.
 inline constexpr Real least_exchange = 16 * std::numeric_limits<Real>::epsilon();
 
-/// Water gained by every cell, its momentum, and the counts of held boundaries.
+/// Water that passes a face of a cell in the step, into it > 0 [kg].
+template <class M>
+Real passed_water(const State<M>& state, const Cell<State<M>::dim>& cell,
+                  const Inflow<State<M>::dim>& f) noexcept {
+  const Real limit = f.flux < 0 ? cell.limit : f.from ? f.from->limit : 1;
+  const Real dm = state.dt * state.water.density * limit * f.flux;
+  return f.from && std::fabs(dm) < least_exchange * min(cell.water, f.from->water) ? 0 : dm;
+}
+
+/// Water gained by every cell and the counts of held boundaries.
 template <class M>
 void find_gains(State<M>& state) {
   constexpr int dim = State<M>::dim;
-  const Real mass_per_flux = state.dt * state.water.density;
   const std::size_t held = state.held.size();
   auto& nodes = state.nodes;
   nodes.ledger_in.assign(static_cast<std::size_t>(state.grid.slots()) * 2 * held, 0);
@@ -253,17 +261,10 @@ void find_gains(State<M>& state) {
               if (nodes.dof[static_cast<std::size_t>(e)] != e) return;
               auto& cell = nodes.cell[static_cast<std::size_t>(e)];
               const CellView<M> view(state, local, slot);
-              Real momentum[dim] = {};
               cell.gain = 0;
               for_inflows(state, view, [&](const Inflow<dim>& f) {
-                const Real limit = f.flux < 0 ? cell.limit : f.from ? f.from->limit : 1;
-                const Real dm = mass_per_flux * limit * f.flux;
-                if (f.from && std::fabs(dm) < least_exchange * min(cell.water, f.from->water))
-                  return;
+                const Real dm = passed_water(state, cell, f);
                 cell.gain += dm;
-                if (dm > 0 && f.from)
-                  for (int d = 0; d < dim; ++d)
-                    momentum[d] += dm * (f.from->mean_velocity[d] - cell.mean_velocity[d]);
                 if (!f.from && f.face->held >= 0 && !f.face->fed) {
                   const std::size_t at = (static_cast<std::size_t>(slot) * held +
                                           static_cast<std::size_t>(f.face->held)) *
@@ -271,9 +272,6 @@ void find_gains(State<M>& state) {
                   nodes.ledger_in[at + (dm > 0 ? 0 : 1)] += std::fabs(dm);
                 }
               });
-              const Real after = cell.water + cell.gain;
-              for (int d = 0; d < dim; ++d)
-                cell.momentum_gain[d] = after > 0 ? momentum[d] / after : 0;
             });
   for (std::size_t h = 0; h < held; ++h)
     for (std::size_t s = 0; s < static_cast<std::size_t>(state.grid.slots()); ++s) {

@@ -33,15 +33,18 @@ inline constexpr int free_volume = 0;    ///< V [m3]
 inline constexpr int free_water = 1;     ///< m [kg]
 inline constexpr int free_pressure = 3;  ///< V p [J]
 inline constexpr int free_position = 4;  ///< first of three, V x [m4]
-// Second record of a cell: liquid momentum, then water content and storage at a trial pressure.
+// Second record of a cell: water content and storage at a trial pressure.
 inline constexpr int content = 4;          ///< sum V theta(p) [m3]
 inline constexpr int storage = 5;          ///< sum V d(theta)/dp [m3/Pa]
 inline constexpr int skeleton_volume = 6;  ///< sum V of the solid points [m3]
 inline constexpr int mean_stress = 7;      ///< sum V tr(sigma*)/3 [J]
-// The same record once the gains of cells are known: what a pore-water point takes of them.
+// The same record once the points have their new velocities:
+inline constexpr int pore_momentum = 0;  ///< first of three, of the pore water [kg m/s]
+inline constexpr int free_momentum = 3;  ///< first of three, of the free water [kg m/s]
+// The same record then: what a pore-water point takes of the gains of its cell.
 inline constexpr int by_pores = 0;       ///< mass per pore volume of the point [kg/m3]
 inline constexpr int by_mass = 1;        ///< mass per mass of the point [-]
-inline constexpr int brought = 2;        ///< first of three, velocity of the water that comes [m/s]
+inline constexpr int brought = 2;        ///< first of three, mean velocity of the cell [m/s]
 inline constexpr int velocity_gain = 5;  ///< first of three, change of velocity [m/s]
 }  // namespace lane
 
@@ -88,7 +91,7 @@ struct Cell {
   Real gain = 0;                 ///< water received in the step [kg]
   Real change = 0;               ///< of the pressure over the step, where solved for [Pa]
   Real limit = 1;                ///< donor limiter on outflow
-  Real mean_velocity[Dim] = {};  ///< of the water, mass weighted [m/s]
+  Real mean_velocity[Dim] = {};  ///< of the water it holds, new, mass weighted [m/s]
   Real momentum_gain[Dim] = {};  ///< velocity change by exchanged momentum [m/s]
   CellKind kind = CellKind::none;
   bool at_air = false;         ///< a face of the cell is open to air

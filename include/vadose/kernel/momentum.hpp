@@ -386,9 +386,6 @@ void apply_special(const State<M>& state, std::int32_t entry, NodeMotion<State<M
     if (d != n) node.solid[d] *= keep;
 }
 
-/// Soil is not drier than this for the drag [-].
-inline constexpr Real least_saturation = 1e-12;
-
 /// DEVIATION: [Zhan] Eq. (20) prints n m g / k without S; Eq. (2) has it, and so has this.
 /// Drag per velocity of a node along each axis for a law linear in the relative velocity: its
 /// coefficient, per volume of liquid, times the liquid volume in the soil at the node. That is the mass
@@ -398,7 +395,7 @@ inline constexpr Real least_saturation = 1e-12;
 template <class M>
 Real drag_coefficient(const State<M>& state, const NodeSums<State<M>::dim>& sums,
                       Real liquid_volume, int axis) {
-  const Real s = max(sums.saturation[axis], least_saturation);
+  const Real s = max(sums.saturation[axis], 1e-12);
   const Real k = sums.conductivity[axis];
   const auto& material = state.soils[sums.material].material;
   if (!(k > 0)) return 1e30;
@@ -425,7 +422,7 @@ Real quadratic_drag_factor(const State<M>& state, const NodeSums<State<M>::dim>&
       w2 += w * w;
       a += linear[d] / dim;
       k += sums.conductivity[d] / dim;
-      s += max(sums.saturation[d], least_saturation) / dim;
+      s += max(sums.saturation[d], 1e-12) / dim;
     }
     const auto& material = state.soils[sums.material].material;
     const Real b = liquid_volume * drag::quadratic<Real>(material.drag, sums.porosity(), s, k,
@@ -437,15 +434,6 @@ Real quadratic_drag_factor(const State<M>& state, const NodeSums<State<M>::dim>&
   }
 }
 
-/// Liquid volume in the soil at a node that the drag acts on [m3]: that of its mass. Traces in bone-dry
-/// soil count as a saturation of least_saturation, or what conductivity is left would let them fall
-/// freely.
-template <class M>
-Real dragged_volume(const State<M>& state, const NodeSums<State<M>::dim>& sums,
-                    Real liquid_mass) noexcept {
-  return max(liquid_mass / state.water.density * sums.soil_share(), least_saturation * sums.pores);
-}
-
 /// New velocities of a node that may hold both phases; the drag feels a prescribed skeleton.
 template <class M>
 void advance_pair(const State<M>& state, const NodeSums<State<M>::dim>& sums,
@@ -454,8 +442,8 @@ void advance_pair(const State<M>& state, const NodeSums<State<M>::dim>& sums,
   const Real dt = state.dt;
   const bool has_solid = is_rigid<M> ? sums.has_soil : node.solid_mass > 0;
   const bool has_water = node.liquid_mass > 0;
-  const Real liquid_volume = dragged_volume(state, sums, node.liquid_mass);
-  const bool drags = has_solid && has_water && liquid_volume > 0;
+  const Real liquid_volume = node.liquid_mass / state.water.density * sums.soil_share();
+  const bool drags = has_solid && liquid_volume > 0;
   Real linear[dim] = {};
   Real factor = 1;
   if (drags) {

@@ -120,10 +120,10 @@ VADOSE_INLINE Lanes pressures_at(const State<M>& state, const CellFinder<State<M
 /// Sums content and storage of the pore water at the trial pressures of the cells; `Stretched`: in
 /// the volume after the step.
 template <bool Stretched = false, class M>
-void sum_content(State<M>& state, bool with_momentum) {
+void sum_content(State<M>& state) {
   constexpr int dim = State<M>::dim;
   const Lanes over_modulus(1 / state.water.bulk_modulus);
-  if constexpr (is_unsaturated<M>) find_heads(state);
+  find_heads(state);
   if constexpr (Stretched) spread_rates(state);
   for_blocks_adding(state.liquid, state.options.threads, [&](const BatchRange& range, int thread) {
     if (!state.nodes.retry[static_cast<std::size_t>(range.slot)]) return;
@@ -132,33 +132,26 @@ void sum_content(State<M>& state, bool with_momentum) {
     const std::int32_t* entries = state.grid.tile(range.slot);
     for (std::size_t b = range.begin; b < range.end; ++b) {
       const int group = state.liquid.group(b);
+      if (group == state.free_group()) continue;
       Lanes x[dim], record[lane_count];
       load_positions(state.liquid, b, x);
       CellFinder<dim> cells;
       cells.find(frame, x);
       for (auto& r : record) r = Lanes(0.0);
-      if (with_momentum) {
-        const Lanes m = state.liquid.load(field::mass, b);
-        for (int d = 0; d < dim; ++d) record[d] = m * state.liquid.load(field::velocity, b, d);
+      const Lanes p = pressures_at(state, cells, entries, x);
+      Lanes porosity = state.liquid.load(field::porosity, b);
+      Lanes volume = state.liquid.load(field::volume, b);
+      if constexpr (Stretched) {
+        const Lanes rate = cell_rates(state, cells, entries, Lanes(0.0));
+        const Lanes stretch = volume_stretch(porosity, Lanes(state.dt) * rate);
+        volume = volume * stretch;
+        porosity = Lanes(1.0) - (Lanes(1.0) - porosity) / stretch;
       }
-      if constexpr (is_unsaturated<M>) {
-        if (group != state.free_group()) {
-          const Lanes p = pressures_at(state, cells, entries, x);
-          Lanes porosity = state.liquid.load(field::porosity, b);
-          Lanes volume = state.liquid.load(field::volume, b);
-          if constexpr (Stretched) {
-            const Lanes rate = cell_rates(state, cells, entries, Lanes(0.0));
-            const Lanes stretch = volume_stretch(porosity, Lanes(state.dt) * rate);
-            volume = volume * stretch;
-            porosity = Lanes(1.0) - (Lanes(1.0) - porosity) / stretch;
-          }
-          const auto theta = swrc::water_content<Lanes>(
-              state.soils[static_cast<std::size_t>(group)].material.retention, p, porosity,
-              over_modulus);
-          record[lane::content] = volume * theta.value;
-          record[lane::storage] = volume * theta.slope;
-        }
-      }
+      const auto theta = swrc::water_content<Lanes>(
+          state.soils[static_cast<std::size_t>(group)].material.retention, p, porosity,
+          over_modulus);
+      record[lane::content] = volume * theta.value;
+      record[lane::storage] = volume * theta.slope;
       add_to_cells(cells, record, tile);
     }
     tile.add_to(state.grid, range.slot, state.nodes.content);
@@ -198,7 +191,7 @@ bool improve_pressure(Cell<Dim>& cell, Real content, Real storage, Real target, 
   return (same_side && close) || settled;
 }
 
-/// Clears content and momentum sums of the blocks that are still sought.
+/// Clears the sums of content of the blocks that are still sought.
 template <class M>
 void clear_content(State<M>& state) {
   parallel_for(static_cast<std::size_t>(state.grid.slots()), state.options.threads,
@@ -239,7 +232,7 @@ void solve_unsaturated(State<M>& state) {
   });
   for (int pass = 0; pass < max_passes; ++pass) {
     clear_content(state);
-    sum_content(state, pass == 0);
+    sum_content(state);
     nodes.sought = nodes.retry;
     std::fill(nodes.retry.begin(), nodes.retry.end(), char{0});
     for_cells(state.grid, state.options.threads,
@@ -269,17 +262,6 @@ void solve_unsaturated(State<M>& state) {
   }
 }
 
-/// Mean velocity of the water of a cell, from the momentum summed with the content.
-template <class M>
-void find_mean_velocity(const State<M>& state, const CellView<M>& view,
-                        Cell<State<M>::dim>& cell) noexcept {
-  const Record sums = member_sums(view, state.nodes.content);
-  const Record pore = member_sums(view, state.nodes.pore);
-  const Record free = member_sums(view, state.nodes.free);
-  const Real m = pore[lane::water] + free[lane::free_water];
-  for (int d = 0; d < State<M>::dim; ++d) cell.mean_velocity[d] = m > 0 ? sums[d] / m : 0;
-}
-
 /// K* = S / (S/K + S_p) of soil from theta' = n (S/K + S_p) exp(p/K) summed over the cell [Pa].
 template <int Dim>
 Real effective_modulus(const Cell<Dim>& cell, Real compression) noexcept {
@@ -288,8 +270,7 @@ Real effective_modulus(const Cell<Dim>& cell, Real compression) noexcept {
 
 /// What follows from the pressure of a cell once it is found.
 template <class M>
-void finish_cell(const State<M>& state, const CellView<M>& view,
-                 Cell<State<M>::dim>& cell) noexcept {
+void finish_cell(const State<M>& state, Cell<State<M>::dim>& cell) noexcept {
   cell.quad_pressure = cell.pressure + hydrostatic(state, cell.centroid, cell.quad_point);
   if (cell.kind == CellKind::free) {
     cell.saturation = 1;
@@ -301,13 +282,11 @@ void finish_cell(const State<M>& state, const CellView<M>& view,
   } else {
     cell.modulus = state.water.bulk_modulus;
   }
-  find_mean_velocity(state, view, cell);
 }
 
 /// Steps 1 and 2: cells and their pressures from the points.
 template <class M>
 void find_pressures(State<M>& state) {
-  constexpr int dim = State<M>::dim;
   sum_water(state);
   if (state.soils.size() > 1) sum_materials(state);
   classify_cells(state);
@@ -317,16 +296,11 @@ void find_pressures(State<M>& state) {
   std::fill(state.nodes.retry.begin(), state.nodes.retry.end(), char{1});
   if constexpr (is_unsaturated<M>) {
     solve_unsaturated(state);
-  } else {
-    sum_content(state, true);
-    if constexpr (has_skeleton<M>) solve_saturated(state);
+  } else if constexpr (has_skeleton<M>) {
+    solve_saturated(state);
   }
-  for_cells(state.grid, state.options.threads,
-            [&](std::int32_t e, const Index<dim>& local, int slot, int) {
-              const auto i = static_cast<std::size_t>(e);
-              if (state.nodes.dof[i] != e) return;
-              finish_cell(state, CellView<M>(state, local, slot), state.nodes.cell[i]);
-            });
+  for_pressure_cells(
+      state, [&](Cell<State<M>::dim>& cell, std::int32_t, int) { finish_cell(state, cell); });
 }
 
 }  // namespace vadose::kernel

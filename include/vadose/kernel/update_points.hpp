@@ -301,21 +301,19 @@ void update_solid(State<M>& state) {
 
 /// Part of the difference in filling that points of a saturated cell even out per step [-].
 inline constexpr Real evening = 0.05;
-/// Part of the water of a cell that may leave with its mean velocity [-].
-inline constexpr Real drying = 0.1;
 /// Differences below this part of the filling are round-off and stay: evened out they do not sum to 0,
 /// and at rest the same is lost in every step.
 inline constexpr Real evenness = 1e-14;
 
-/// Share of the gain of a soil cell that each of its points takes: in saturated cells in proportion to
-/// its pores; else outflow in proportion to its mass, inflow to the room it has.
+/// Share of the gain of a soil cell that each of its points takes: outflow in proportion to its mass,
+/// inflow to its pores in saturated cells, else to the room it has.
 template <class M>
 void share_gain(const State<M>& state, const Cell<State<M>::dim>& cell, Record& share) noexcept {
   const Real density = state.water.density;
-  if (cell.pressure >= 0) {
-    share[lane::by_pores] = cell.gain / cell.pore_volume;
-  } else if (cell.gain < 0) {
+  if (cell.gain < 0) {
     share[lane::by_mass] = cell.gain / cell.water;
+  } else if (cell.pressure >= 0) {
+    share[lane::by_pores] = cell.gain / cell.pore_volume;
   } else {
     // Room of the whole cell can be too small: then by pores.
     const Real room = density * cell.pore_volume - cell.water;
@@ -341,14 +339,59 @@ Real find_share(const State<M>& state, const Cell<State<M>::dim>& cell, Record& 
                             max(cell.porosity, 1e-6);
       p += (cell.gain / state.water.density - squeezed) / max(cell.storage, 1e-30);
     }
-  } else if (cell.pore_gain != 0) {
+  } else if (cell.pore_gain > 0) {
     share[lane::by_pores] = cell.pore_gain / cell.soil_pores;
+  } else if (cell.pore_gain < 0) {
+    share[lane::by_mass] = cell.pore_gain / cell.soil_water;
   }
   for (int d = 0; d < dim; ++d) {
     share[lane::brought + d] = cell.mean_velocity[d];
     p -= state.water.density * state.gravity[d] * cell.centroid[d];
   }
   return p;
+}
+
+/// Mean velocities of the water of every cell: of what it holds, and what the water of its submerged
+/// pores that passes to free water brings.
+template <class M>
+void find_mean_velocities(State<M>& state) {
+  constexpr int dim = State<M>::dim;
+  for_cells(state.grid, state.options.threads,
+            [&](std::int32_t e, const Index<dim>& local, int slot, int) {
+              if (state.nodes.dof[static_cast<std::size_t>(e)] != e) return;
+              auto& cell = state.nodes.cell[static_cast<std::size_t>(e)];
+              const Record sums = member_sums(CellView<M>(state, local, slot), state.nodes.content);
+              const bool soil = cell.kind == CellKind::soil;
+              const int own = soil ? lane::pore_momentum : lane::free_momentum;
+              for (int d = 0; d < dim; ++d) {
+                cell.mean_velocity[d] = cell.water > 0 ? sums[own + d] / cell.water : 0;
+                cell.momentum_gain[d] =
+                    !soil && cell.pore_gain < 0
+                        ? cell.pore_gain * (cell.mean_velocity[d] -
+                                            sums[lane::pore_momentum + d] / cell.soil_water)
+                        : 0;
+              }
+            });
+}
+
+/// What leaves a cell takes the velocity of its water along, the mean where it arrives.
+template <class M>
+void find_momentum_gains(State<M>& state) {
+  constexpr int dim = State<M>::dim;
+  for_cells(state.grid, state.options.threads,
+            [&](std::int32_t e, const Index<dim>& local, int slot, int) {
+              if (state.nodes.dof[static_cast<std::size_t>(e)] != e) return;
+              auto& cell = state.nodes.cell[static_cast<std::size_t>(e)];
+              for_inflows(state, CellView<M>(state, local, slot), [&](const Inflow<dim>& f) {
+                const Real dm = f.from && f.flux > 0 ? passed_water(state, cell, f) : 0;
+                if (dm > 0)
+                  for (int d = 0; d < dim; ++d)
+                    cell.momentum_gain[d] +=
+                        dm * (f.from->mean_velocity[d] - cell.mean_velocity[d]);
+              });
+              const Real after = cell.water + cell.gain;
+              for (Real& v : cell.momentum_gain) v = after > 0 ? v / after : 0;
+            });
 }
 
 /// The shares of all cells, as points read them.
@@ -382,7 +425,9 @@ VADOSE_INLINE Lanes evened_out(const Lanes& filling, const Lanes& pores,
 }
 
 /// What eight pore-water points take of the gains of their cells; exchanged water carries its
-/// momentum. Writes mass, velocity and pressure.
+/// momentum: what leaves a point has the velocity of the point, what comes the mean where it left.
+/// (Were the mean of a cell to leave, the rest of each point would double its departure from the mean in
+/// soil so dry that half of its water leaves in a step.) Writes mass, velocity and pressure.
 template <class M>
 VADOSE_INLINE void exchange_batch(State<M>& state, std::size_t b,
                                   const CellFinder<State<M>::dim>& cells,
@@ -403,22 +448,19 @@ VADOSE_INLINE void exchange_batch(State<M>& state, std::size_t b,
   const Lanes filling = Lanes::load(fillings);
   const Lanes pores = volume * points.load(field::porosity, b);
   const Lanes held = select(volume > Lanes(0.0), mass, Lanes(0.0));
-  const Lanes gain = pores * share[lane::by_pores] + held * share[lane::by_mass] +
-                     evened_out(filling, pores, held);
-  const Lanes after = mass + gain;
-  // The pores of a cell of free water that give some away keep their velocity.
-  const LaneMask keeps =
-      !(after > Lanes(0.0)) |
-      ((gain < Lanes(0.0)) & (share[lane::by_mass] == Lanes(0.0)) & !(filling > Lanes(0.0)));
-  // Water leaves with the mean velocity of its cell. Where much of it leaves in a step, bone-dry soil, it
-  // takes each point's own along instead, or the difference to the mean would grow as much.
-  const LaneMask dries =
-      (share[lane::by_mass] < Lanes(-drying)) & (share[lane::by_pores] == Lanes(0.0));
-  const Lanes over = Lanes(1.0) / select(keeps, Lanes(1.0), after);
+  const Lanes by_mass = held * share[lane::by_mass];
+  const Lanes given = select(share[lane::by_pores] == Lanes(0.0), by_mass, Lanes(0.0));
+  const Lanes taken =
+      pores * share[lane::by_pores] + (by_mass - given) + evened_out(filling, pores, held);
+  const Lanes rest = mass + given;
+  const Lanes after = rest + taken;
+  const LaneMask empty = !(after > Lanes(0.0));
+  const Lanes over = Lanes(1.0) / select(empty, Lanes(1.0), after);
   for (int d = 0; d < dim; ++d) {
     const Lanes v = points.load(field::velocity, b, d);
-    const Lanes mixed = select(dries, v, (mass * v + gain * share[lane::brought + d]) * over);
-    points.store(field::velocity, b, d, select(keeps, v, mixed + share[lane::velocity_gain + d]));
+    const Lanes mixed =
+        (rest * v + taken * share[lane::brought + d]) * over + share[lane::velocity_gain + d];
+    points.store(field::velocity, b, d, select(empty, v, mixed));
   }
   points.store(field::mass, b, after);
   if (!state.frozen)
@@ -460,10 +502,11 @@ VADOSE_INLINE void free_batch(State<M>& state, std::size_t b,
         pressure[l] =
             at_rest + keep * (pressure[l] - at_rest) - bulk_modulus * state.dt * cell.rate;
       if (cell.gain != 0 && cell.water > 0) {
-        const Real dm = cell.gain * mass[l] / cell.water;
+        const Real dm = cell.gain * mass[l] / cell.water, taken = max(0.0, dm);
         for (int d = 0; d < dim; ++d) {
           double& v = points.at(field::velocity, b, d)[l];
-          v = (mass[l] * v + dm * cell.mean_velocity[d]) / (mass[l] + dm) + cell.momentum_gain[d];
+          v = (mass[l] * v + taken * cell.mean_velocity[d]) / (mass[l] + taken) +
+              cell.momentum_gain[d];
         }
         mass[l] += dm;
       }
@@ -501,130 +544,235 @@ void stop_at_ground(const State<M>& state, const TileFrame<State<M>::dim>& frame
   }
 }
 
+/// Eight liquid points among the liquid's nodes.
+template <class M>
+struct LiquidPlace {
+  static constexpr int dim = State<M>::dim;
+  std::size_t batch;
+  int slot;  ///< of their block
+  bool is_free;
+  Lanes x[dim];       ///< position [m]
+  Lanes inside[dim];  ///< the same, moved into the cell whose pressure it shares [m]
+  CellFinder<dim> cells;
+  Stencil<shape::Linear, dim> stencil;
+
+  LiquidPlace(const State<M>& state, std::size_t b, int block, const TileFrame<dim>& frame)
+      : batch(b), slot(block), is_free(state.liquid.group(b) == state.free_group()) {
+    Lanes none[dim];
+    load_positions(state.liquid, b, x);
+    for (int d = 0; d < dim; ++d) {
+      inside[d] = x[d];
+      none[d] = Lanes(0.0);
+    }
+    cells.find(frame, x);
+    into_pressure_cell(state, cells, state.grid.tile(slot), slot, inside);
+    stencil.evaluate(frame, inside, none);
+  }
+};
+
+/// New velocities of eight liquid points from the liquid's nodes, and viscous stress of free water.
+/// Returns the velocity of the water there.
+template <class M>
+VADOSE_INLINE PointMotion<State<M>::dim> accelerate_liquid(State<M>& state,
+                                                           const LiquidPlace<M>& at,
+                                                           const TileFrame<State<M>::dim>& frame,
+                                                           const Record* liquid) noexcept {
+  constexpr int dim = State<M>::dim;
+  auto& points = state.liquid;
+  PointMotion<dim> motion;
+  interpolate<is_viscous<M> || M::Transfer::stores_gradient>(at.stencil, liquid, motion);
+  update_velocity(state, points, at.batch, at.stencil, frame, at.inside, liquid, motion);
+  if constexpr (is_viscous<M>) {
+    if (at.is_free) {
+      const Lanes hoop =
+          motion.velocity[0] * over_radius<typename State<M>::Kinematics, dim>(at.x, Real(0));
+      const auto tau = state.fluid.viscous_stress(
+          rate_of_deformation<State<M>::stress_size>(motion.gradient, hoop));
+      for (int i = 0; i < State<M>::stress_size; ++i)
+        points.store(field::viscous_stress, at.batch, i, tau[i]);
+    }
+  }
+  return motion;
+}
+
 /// A free point of a sliver moves with the edge of its pressure cell. A wall on the far side of its own
 /// cell is beyond what that edge knows of: towards it the point moves less, as if the cell had the
 /// velocity of the edge on one side and none on the other, and so never passes.
 template <class M>
-VADOSE_INLINE void keep_within_walls(const State<M>& state, const CellFinder<State<M>::dim>& cells,
-                                     const std::int32_t* entries, int slot,
-                                     const Lanes (&x)[State<M>::dim],
-                                     const Lanes (&inside)[State<M>::dim],
+VADOSE_INLINE void keep_within_walls(const State<M>& state, const LiquidPlace<M>& at,
+                                     const std::int32_t* entries,
                                      Lanes (&flux)[State<M>::dim]) noexcept {
   constexpr int dim = State<M>::dim;
-  if (!state.nodes.near_sliver[static_cast<std::size_t>(slot)]) return;
+  if (!state.nodes.near_sliver[static_cast<std::size_t>(at.slot)]) return;
   for (int l = 0; l < lane_count; ++l)
     for (int d = 0; d < dim; ++d) {
-      const Real beyond = x[d][l] - inside[d][l];
+      const Real beyond = at.x[d][l] - at.inside[d][l];
       if (beyond == 0) continue;
-      const int node = cells.index[l] + (beyond > 0 ? BlockGrid<dim>::tile_stride(d) : 0);
+      const int node = at.cells.index[l] + (beyond > 0 ? BlockGrid<dim>::tile_stride(d) : 0);
       if (state.nodes.node_flags[static_cast<std::size_t>(entries[node])] &
           (node_flag::liquid_fixed << d))
         flux[d].set(l, flux[d][l] * max(0.0, 1 - std::fabs(beyond) / state.grid.cell_size()));
     }
 }
 
-/// One batch of liquid points: velocity from the liquid's nodes; pore water moves with the
-/// skeleton through the skeleton's shape functions, free water with the total volume flux.
+/// Moves eight points of free water with a velocity of their own volume.
 template <class M>
-VADOSE_INLINE void update_liquid_batch(State<M>& state, std::size_t b, int slot,
-                                       const TileFrame<State<M>::dim>& frame,
-                                       const std::int32_t* entries, const Record* liquid,
-                                       const Record* solid, StepSums& sums) noexcept {
+VADOSE_INLINE void move_free_water(State<M>& state, const LiquidPlace<M>& at,
+                                   const std::int32_t* entries, Lanes (&velocity)[State<M>::dim],
+                                   StepSums& sums) noexcept {
+  free_batch(state, at.batch, at.cells, entries, at.x);
+  keep_within_walls(state, at, entries, velocity);
+  move(state, state.liquid, at.batch, "liquid", velocity, sums);
+}
+
+/// Total volume flux q at eight points, with which free water moves; it stops at the ground.
+template <class M>
+VADOSE_INLINE void find_total_flux(const State<M>& state, const LiquidPlace<M>& at,
+                                   const TileFrame<State<M>::dim>& frame,
+                                   const std::int32_t* entries,
+                                   Lanes (&flux)[State<M>::dim]) noexcept {
   constexpr int dim = State<M>::dim;
-  auto& points = state.liquid;
-  const bool is_free = points.group(b) == state.free_group();
-  if (is_free && state.frozen) return;
-  Lanes x[dim], inside[dim], none[dim];
-  load_positions(points, b, x);
-  for (int d = 0; d < dim; ++d) {
-    inside[d] = x[d];
-    none[d] = Lanes(0.0);
-  }
-  CellFinder<dim> cells;
-  cells.find(frame, x);
-  into_pressure_cell(state, cells, entries, slot, inside);
-  Stencil<shape::Linear, dim> stencil;
-  stencil.evaluate(frame, inside, none);
-  PointMotion<dim> motion;
-  interpolate<is_viscous<M> || M::Transfer::stores_gradient>(stencil, liquid, motion);
-  update_velocity(state, points, b, stencil, frame, inside, liquid, motion);
-  if constexpr (is_viscous<M>) {
-    if (is_free) {
-      const Lanes hoop =
-          motion.velocity[0] * over_radius<typename State<M>::Kinematics, dim>(x, Real(0));
-      const auto tau = state.fluid.viscous_stress(
-          rate_of_deformation<State<M>::stress_size>(motion.gradient, hoop));
-      for (int i = 0; i < State<M>::stress_size; ++i)
-        points.store(field::viscous_stress, b, i, tau[i]);
+  for (int l = 0; l < lane_count; ++l) {
+    Real q[dim] = {};
+    for_cube<dim>(0, 2, [&](const Index<dim>& i) {
+      int node = at.stencil.offset[l];
+      for (int d = 0; d < dim; ++d) node += i[d] * BlockGrid<dim>::tile_stride(d);
+      const Record& r = state.nodes.mixture[static_cast<std::size_t>(entries[node])];
+      for (int d = 0; d < dim; ++d) q[d] += at.stencil.product(i, l) * r[d];
+    });
+    if (state.liquid.at(field::id, at.batch)[l] >= 0) {
+      Real position[dim];
+      for (int d = 0; d < dim; ++d) position[d] = at.x[d][l];
+      stop_at_ground(state, frame, entries, at.cells.index[l], position, q);
     }
-  }
-  if (is_free) {
-    free_batch(state, b, cells, entries, x);
-    Lanes flux[dim];
-    for (int d = 0; d < dim; ++d) flux[d] = motion.velocity[d];
-    if constexpr (has_skeleton<M>) {
-      // Near soil the water moves with the total volume flux q: interpolated per point.
-      for (int l = 0; l < lane_count; ++l) {
-        Real q[dim] = {};
-        for_cube<dim>(0, 2, [&](const Index<dim>& i) {
-          int at = stencil.offset[l];
-          for (int d = 0; d < dim; ++d) at += i[d] * BlockGrid<dim>::tile_stride(d);
-          const Record& r = state.nodes.mixture[static_cast<std::size_t>(entries[at])];
-          for (int d = 0; d < dim; ++d) q[d] += stencil.product(i, l) * r[d];
-        });
-        if (points.at(field::id, b)[l] >= 0) {
-          Real position[dim];
-          for (int d = 0; d < dim; ++d) position[d] = x[d][l];
-          stop_at_ground(state, frame, entries, cells.index[l], position, q);
-        }
-        for (int d = 0; d < dim; ++d) flux[d].set(l, q[d]);
-      }
-    }
-    keep_within_walls(state, cells, entries, slot, x, inside, flux);
-    move(state, points, b, "liquid", flux, sums);
-    return;
-  }
-  if constexpr (has_skeleton<M>) {
-    exchange_batch(state, b, cells, entries, x);
-    if constexpr (is_deformable<M>) {
-      Lanes half[dim];
-      load_half_sizes(points, b, half);
-      Stencil<typename M::Shape, dim> skeleton;
-      skeleton.evaluate(frame, x, half);
-      PointMotion<dim> carried;
-      interpolate<true>(skeleton, solid, carried);
-      Lanes trace =
-          carried.velocity[0] * over_radius<typename State<M>::Kinematics, dim>(x, Real(0));
-      for (int d = 0; d < dim; ++d) trace += carried.gradient[d][d];
-      const Lanes rate = cell_rates(state, cells, entries, trace);
-      const Lanes n = points.load(field::porosity, b);
-      const Lanes stretch = volume_stretch(n, Lanes(state.dt) * rate);
-      points.store(field::volume, b, points.load(field::volume, b) * stretch);
-      points.store(field::porosity, b, Lanes(1.0) - (Lanes(1.0) - n) / stretch);
-      update_half_sizes(points, b, carried.gradient, state.dt, state.grid.cell_size());
-      move(state, points, b, "liquid", carried.velocity, sums);
-    }
+    for (int d = 0; d < dim; ++d) flux[d].set(l, q[d]);
   }
 }
 
-/// Nodes to liquid points.
+/// Water, volume and position of eight pore-water points, which move with the skeleton through its own
+/// shape functions.
 template <class M>
-void update_liquid(State<M>& state) {
+VADOSE_INLINE void carry_pore_water(State<M>& state, std::size_t b,
+                                    const TileFrame<State<M>::dim>& frame,
+                                    const std::int32_t* entries,
+                                    [[maybe_unused]] const Record* solid,
+                                    [[maybe_unused]] StepSums& sums) noexcept {
   constexpr int dim = State<M>::dim;
-  if constexpr (has_skeleton<M>) find_shares(state);
-  for_blocks(state.liquid, state.options.threads, [&](const BatchRange& range, int thread) {
+  auto& points = state.liquid;
+  Lanes x[dim];
+  load_positions(points, b, x);
+  CellFinder<dim> cells;
+  cells.find(frame, x);
+  exchange_batch(state, b, cells, entries, x);
+  if constexpr (is_deformable<M>) {
+    Lanes half[dim];
+    load_half_sizes(points, b, half);
+    Stencil<typename M::Shape, dim> skeleton;
+    skeleton.evaluate(frame, x, half);
+    PointMotion<dim> carried;
+    interpolate<true>(skeleton, solid, carried);
+    Lanes trace = carried.velocity[0] * over_radius<typename State<M>::Kinematics, dim>(x, Real(0));
+    for (int d = 0; d < dim; ++d) trace += carried.gradient[d][d];
+    const Lanes rate = cell_rates(state, cells, entries, trace);
+    const Lanes n = points.load(field::porosity, b);
+    const Lanes stretch = volume_stretch(n, Lanes(state.dt) * rate);
+    points.store(field::volume, b, points.load(field::volume, b) * stretch);
+    points.store(field::porosity, b, Lanes(1.0) - (Lanes(1.0) - n) / stretch);
+    update_half_sizes(points, b, carried.gradient, state.dt, state.grid.cell_size());
+    move(state, points, b, "liquid", carried.velocity, sums);
+  }
+}
+
+/// Momentum of eight liquid points, to the cells.
+template <class M>
+VADOSE_INLINE void add_momentum(const State<M>& state, const LiquidPlace<M>& at,
+                                Tile<State<M>::dim>& tile) noexcept {
+  const auto& points = state.liquid;
+  const int first = at.is_free ? lane::free_momentum : lane::pore_momentum;
+  const Lanes mass = points.load(field::mass, at.batch);
+  Lanes record[lane_count];
+  for (auto& r : record) r = Lanes(0.0);
+  for (int d = 0; d < State<M>::dim; ++d)
+    record[first + d] = mass * points.load(field::velocity, at.batch, d);
+  add_to_cells(at.cells, record, tile);
+}
+
+/// Nodes to liquid points: velocities, and their momentum by cell.
+template <class M>
+void update_liquid_velocities(State<M>& state) {
+  constexpr int dim = State<M>::dim;
+  clear(state.nodes.content, state.options.threads);
+  for_blocks_adding(state.liquid, state.options.threads, [&](const BatchRange& range, int thread) {
     Tile<dim>& liquid = state.tile(thread, 2);
-    Tile<dim>& solid = state.tile(thread, 3);
+    Tile<dim>& cell_sums = state.tile(thread, 0);
     liquid.read(state.grid, range.slot, state.nodes.liquid_out);
+    const TileFrame<dim> frame = tile_frame(state.grid, range.slot);
+    for (std::size_t b = range.begin; b < range.end; ++b) {
+      state.liquid.prefetch(b + 2);
+      const LiquidPlace<M> at(state, b, range.slot, frame);
+      if (at.is_free && state.frozen) continue;
+      accelerate_liquid(state, at, frame, liquid.record);
+      add_momentum(state, at, cell_sums);
+    }
+    cell_sums.add_to(state.grid, range.slot, state.nodes.content);
+  });
+}
+
+/// Nodes to liquid points: water, volumes, pressures, positions.
+template <class M>
+void carry_liquid(State<M>& state) {
+  constexpr int dim = State<M>::dim;
+  for_blocks(state.liquid, state.options.threads, [&](const BatchRange& range, int thread) {
+    Tile<dim>& solid = state.tile(thread, 3);
     if constexpr (is_deformable<M>) solid.read(state.grid, range.slot, state.nodes.solid_out);
     const TileFrame<dim> frame = tile_frame(state.grid, range.slot);
     const std::int32_t* entries = state.grid.tile(range.slot);
     StepSums& sums = state.sums[static_cast<std::size_t>(thread)];
     for (std::size_t b = range.begin; b < range.end; ++b) {
       state.liquid.prefetch(b + 2);
-      update_liquid_batch(state, b, range.slot, frame, entries, liquid.record, solid.record, sums);
+      if (state.liquid.group(b) != state.free_group()) {
+        carry_pore_water(state, b, frame, entries, solid.record, sums);
+      } else if (!state.frozen) {
+        const LiquidPlace<M> at(state, b, range.slot, frame);
+        Lanes flux[dim];
+        find_total_flux(state, at, frame, entries, flux);
+        move_free_water(state, at, entries, flux, sums);
+      }
     }
   });
+}
+
+/// Nodes to liquid points where there is no soil: all at once.
+template <class M>
+void update_free_water(State<M>& state) {
+  constexpr int dim = State<M>::dim;
+  for_blocks(state.liquid, state.options.threads, [&](const BatchRange& range, int thread) {
+    Tile<dim>& liquid = state.tile(thread, 2);
+    liquid.read(state.grid, range.slot, state.nodes.liquid_out);
+    const TileFrame<dim> frame = tile_frame(state.grid, range.slot);
+    const std::int32_t* entries = state.grid.tile(range.slot);
+    StepSums& sums = state.sums[static_cast<std::size_t>(thread)];
+    for (std::size_t b = range.begin; b < range.end && !state.frozen; ++b) {
+      state.liquid.prefetch(b + 2);
+      const LiquidPlace<M> at(state, b, range.slot, frame);
+      auto motion = accelerate_liquid(state, at, frame, liquid.record);
+      move_free_water(state, at, entries, motion.velocity, sums);
+    }
+  });
+}
+
+/// Nodes to liquid points. What cells exchange takes velocities along that must all be there before.
+template <class M>
+void update_liquid(State<M>& state) {
+  if constexpr (has_skeleton<M>) {
+    update_liquid_velocities(state);
+    find_mean_velocities(state);
+    find_momentum_gains(state);
+    find_shares(state);
+    carry_liquid(state);
+  } else {
+    update_free_water(state);
+  }
 }
 
 /// Carries the loads with the ground (hat functions).
