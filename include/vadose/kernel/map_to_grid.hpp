@@ -62,11 +62,26 @@ VADOSE_INLINE SymTensor<Lanes, State<M>::stress_size> load_stress(const State<M>
   return stress;
 }
 
+/// 1 for points in cells of soil, 0 in others.
+template <class M>
+VADOSE_INLINE Lanes in_soil_cells(const State<M>& state, const CellFinder<State<M>::dim>& cells,
+                                  const std::int32_t* entries) noexcept {
+  alignas(64) double soil[lane_count];
+  for (int l = 0; l < lane_count; ++l) {
+    const auto e = static_cast<std::size_t>(entries[cells.index[l]]);
+    soil[l] = state.nodes.cell[e].kind == CellKind::soil ? 1 : 0;
+  }
+  return Lanes::load(soil);
+}
+
 /// Adds one batch of solid points to a tile of nodes. With MeanByCell the mean stress goes to the
-/// cells instead, where it meets the liquid pressure: see prepare_cell().
+/// cells instead, where it meets the liquid pressure: see prepare_cell(). Not so in cells of free water:
+/// grains that only come into one have next to no mass at its far nodes, which its mean stress would
+/// throw away.
 template <bool MeanByCell, class M>
 VADOSE_INLINE void map_solid_batch(const State<M>& state, std::size_t b,
-                                   const TileFrame<State<M>::dim>& frame, Record* tile,
+                                   const TileFrame<State<M>::dim>& frame,
+                                   [[maybe_unused]] const std::int32_t* entries, Record* tile,
                                    [[maybe_unused]] Tile<State<M>::dim>& cell_sums) noexcept {
   constexpr int dim = State<M>::dim;
   using Shape = typename M::Shape;
@@ -81,13 +96,14 @@ VADOSE_INLINE void map_solid_batch(const State<M>& state, std::size_t b,
   const Lanes volume = state.solid.load(field::volume, b);
   auto stress = load_stress(state, b);
   if constexpr (MeanByCell) {
-    const Lanes mean = stress.mean();
-    stress.add_isotropic(-mean);
     CellFinder<dim> cells;
     cells.find(frame, x);
+    const Lanes by_cell = in_soil_cells(state, cells, entries);
+    const Lanes mean = by_cell * stress.mean();
+    stress.add_isotropic(-mean);
     Lanes record[lane_count];
     for (auto& r : record) r = Lanes(0.0);
-    record[lane::skeleton_volume] = volume;
+    record[lane::skeleton_volume] = by_cell * volume;
     record[lane::mean_stress] = volume * mean;
     add_to_cells(cells, record, cell_sums);
   }
@@ -151,7 +167,8 @@ void map_solid(State<M>& state) {
     const TileFrame<dim> frame = tile_frame(state.grid, range.slot);
     for (std::size_t b = range.begin; b < range.end; ++b) {
       state.solid.prefetch(b + 2);
-      map_solid_batch<MeanByCell>(state, b, frame, tile.record, cell_sums);
+      map_solid_batch<MeanByCell>(state, b, frame, state.grid.tile(range.slot), tile.record,
+                                  cell_sums);
     }
     tile.add_to(state.grid, range.slot, state.nodes.solid_in);
     if constexpr (MeanByCell) cell_sums.add_to(state.grid, range.slot, state.nodes.content);

@@ -58,7 +58,7 @@ VADOSE_INLINE Lanes cell_rates(const State<M>& state, const CellFinder<State<M>:
   return select(found == found, found, otherwise);
 }
 
-/// The rates as cell_rates() reads them: of the cell whose pressure a cell uses, NaN without one.
+/// The rates as cell_rates() reads them: of the soil cell whose pressure a cell uses, NaN without one.
 template <class M>
 void spread_rates(State<M>& state) {
   constexpr std::size_t cells = Block<State<M>::dim>::cells;
@@ -67,8 +67,8 @@ void spread_rates(State<M>& state) {
       static_cast<std::size_t>(state.grid.slots()), state.options.threads, [&](std::size_t s, int) {
         for (std::size_t i = s * cells; i < (s + 1) * cells; ++i) {
           const std::int32_t owner = nodes.dof[i];
-          nodes.rate[i] =
-              owner < 0 ? unset : nodes.cell[static_cast<std::size_t>(owner)].skeleton_rate;
+          const bool soil = owner >= 0 && nodes.cell[i].kind == CellKind::soil;
+          nodes.rate[i] = soil ? nodes.cell[static_cast<std::size_t>(owner)].skeleton_rate : unset;
         }
       });
 }
