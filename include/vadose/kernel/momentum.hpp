@@ -305,12 +305,14 @@ void pressure_forces(const NodeSums<Dim>& sums, Real skeleton_volume, Real liqui
   }
 }
 
-/// Local damping of the skeleton: against its velocity, by its share of the mass.
+/// Local damping of the skeleton: against its velocity, by its share of the mass. Grains beyond the
+/// soil, among free water, are damped alone.
 template <int Dim>
-void damp(Real damping, NodeMotion<Dim>& node) noexcept {
-  const Real share = node.solid_mass / (node.solid_mass + node.liquid_mass);
+void damp(Real damping, bool beyond_soil, NodeMotion<Dim>& node) noexcept {
+  const Real liquid = beyond_soil ? 0 : 1;
+  const Real share = node.solid_mass / (node.solid_mass + liquid * node.liquid_mass);
   for (int d = 0; d < Dim; ++d) {
-    const Real out_of_balance = std::fabs(node.solid_force[d] + node.liquid_force[d]);
+    const Real out_of_balance = std::fabs(node.solid_force[d] + liquid * node.liquid_force[d]);
     const Real v = node.solid[d];
     if (v != 0) node.solid_force[d] -= std::copysign(damping * out_of_balance * share, v);
   }
@@ -463,7 +465,7 @@ void advance_pair(const State<M>& state, const NodeSums<State<M>::dim>& sums,
       node.solid[d] = r_s / b;
     if (has_water) node.liquid[d] = (r_l + q * node.solid[d]) / (a + q);
     if (has_water && has_solid && !fixed) {
-      if (state.frozen)
+      if (drags && state.frozen)
         node.liquid[d] = node.solid[d] = (r_l + r_s) / (a + b);
       else if (drags)
         solve_pair(a, b, q, r_l, r_s, node.liquid[d], node.solid[d]);
@@ -698,7 +700,8 @@ void advance_node(State<M>& state, const CellView<M>& view, [[maybe_unused]] con
     for (int d = 0; d < dim; ++d)
       state.nodes.open_impulse[static_cast<std::size_t>(view.slot * dim + d)] += state.dt * open[d];
   }
-  if (state.options.damping > 0 && node.solid_mass > 0) damp(state.options.damping, node);
+  if (state.options.damping > 0 && node.solid_mass > 0)
+    damp(state.options.damping, !(sums.soil_share() > 0), node);
   if constexpr (has_liquid<M> && has_skeleton<M>) {
     Real prescribed[dim];
     find_prescribed(state, view.entry(), flags, prescribed);

@@ -485,7 +485,7 @@ void advance_printed_node(State<M>& state, std::int32_t entry) {
         node.solid_force[d] += nodes.mixture[i][lane::force + d] +
                                node.liquid_mass * state.gravity[d] - node.liquid_force[d];
     }
-    if (state.options.damping > 0 && node.solid_mass > 0) damp(state.options.damping, node);
+    if (state.options.damping > 0 && node.solid_mass > 0) damp(state.options.damping, false, node);
     advance_printed_pair<Mends.implicit_drag>(state, coefficient, prescribed, node);
     apply_walls(state, entry, flags, node);
   }
