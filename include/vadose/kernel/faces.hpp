@@ -402,8 +402,26 @@ inline Real own_pressure(const FaceFlux& face) noexcept {
   return face.held_pressure - (face.soil_below ? 1 : -1) * face.head_gradient * face.distance;
 }
 
-/// Pressure at the surface of every soil cell at air or at a held wall: the mean of what is held at
-/// its faces; a closed surface carries the pressure of the cell there, so that it drives no flow.
+/// What the faces of a cell at air or at a wall say of the pressure there.
+struct SurfaceSums {
+  Real pressure = 0;  ///< sum of pressure times area [N]
+  Real area = 0;      ///< [m2]
+  Real shut = 0;      ///< area of those that let nothing pass [m2]
+
+  void add(Real p, const FaceFlux& face) noexcept {
+    pressure += face.area * p;
+    area += face.area;
+    if (face.is_shut()) shut += face.area;
+  }
+  SurfaceSums operator+(const SurfaceSums& o) const noexcept {
+    return {pressure + o.pressure, area + o.area, shut + o.shut};
+  }
+};
+
+/// Pressure at the surface of every soil cell at air or at a held wall: the mean of what is held at its
+/// faces across an axis, or, across an axis without, at all of them; a closed surface carries the pressure
+/// of the cell there, so that it drives no flow. (One mean for all axes: at rest, where closed ground and
+/// a held wall meet, the weight of the water would drive it through the wall.)
 template <class M>
 void find_reference_pressures(State<M>& state) {
   constexpr int dim = State<M>::dim;
@@ -419,18 +437,22 @@ void find_reference_pressures(State<M>& state) {
               const bool cut = cell.at_air || cell.members > 1;
               const Real own =
                   cut ? cell.pressure + hydrostatic(state, cell.centroid, cell.surface_point) : 0;
-              Real sum = 0, area = 0, shut = 0;
-              for_faces(view, [&](int, const FaceFlux& face) {
+              SurfaceSums across[dim], all;
+              for_faces(view, [&](int axis, const FaceFlux& face) {
                 if (face.kind != FaceKind::surface) return;
-                sum += face.area * (!face.is_shut() ? face.held_pressure
-                                    : cut           ? own
-                                                    : own_pressure(face));
-                area += face.area;
-                if (face.is_shut()) shut += face.area;
+                across[axis].add(!face.is_shut() ? face.held_pressure
+                                 : cut           ? own
+                                                 : own_pressure(face),
+                                 face);
               });
-              cell.has_reference = area > 0;
-              cell.reference_pressure = area > 0 ? sum / area : 0;
-              cell.reference_share = area > 0 ? shut / area : 0;
+              for (const auto& sums : across) all = all + sums;
+              cell.has_reference = all.area > 0;
+              if (!cell.has_reference) return;
+              for (int d = 0; d < dim; ++d) {
+                const SurfaceSums& sums = across[d].area > 0 ? across[d] : all;
+                cell.reference_pressure[d] = sums.pressure / sums.area;
+                cell.reference_share[d] = sums.shut / sums.area;
+              }
             });
 }
 

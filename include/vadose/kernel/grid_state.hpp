@@ -81,18 +81,18 @@ struct Cell {
   Real raw_fill = 0;                ///< filled fraction of the cell by itself
   Real fill = 0;                    ///< filled fraction, slivers included; 1 away from air
   Real surface_point[Dim] = {};     ///< on the plane that cuts a cell at air [m]
-  /// Liquid pressure at the surface of a cell at air: as held there, else that of the cell itself
-  /// (a closed surface carries it) [Pa].
-  Real reference_pressure = 0;
-  Real reference_share = 0;      ///< part of it that follows the pressure of the cell [-]
-  Real rate = 0;                 ///< div q of free water [1/s]
-  Real skeleton_rate = 0;        ///< div v^s [1/s]
-  Real mean_stress = 0;          ///< mean Bishop stress of the skeleton in the cell [Pa]
-  Real gain = 0;                 ///< water received in the step [kg]
-  Real change = 0;               ///< of the pressure over the step, where solved for [Pa]
-  Real limit = 1;                ///< donor limiter on outflow
-  Real mean_velocity[Dim] = {};  ///< of the water it holds, new, mass weighted [m/s]
-  Real momentum_gain[Dim] = {};  ///< velocity change by exchanged momentum [m/s]
+  /// Liquid pressure at the surface of a cell at air, across each axis: as held there, else that of the
+  /// cell itself (a closed surface carries it) [Pa].
+  Real reference_pressure[Dim] = {};
+  Real reference_share[Dim] = {};  ///< part of it that follows the pressure of the cell [-]
+  Real rate = 0;                   ///< div q of free water [1/s]
+  Real skeleton_rate = 0;          ///< div v^s [1/s]
+  Real mean_stress = 0;            ///< mean Bishop stress of the skeleton in the cell [Pa]
+  Real gain = 0;                   ///< water received in the step [kg]
+  Real change = 0;                 ///< of the pressure over the step, where solved for [Pa]
+  Real limit = 1;                  ///< donor limiter on outflow
+  Real mean_velocity[Dim] = {};    ///< of the water it holds, new, mass weighted [m/s]
+  Real momentum_gain[Dim] = {};    ///< velocity change by exchanged momentum [m/s]
   CellKind kind = CellKind::none;
   bool at_air = false;         ///< a face of the cell is open to air
   bool drop = false;           ///< stands alone: no force, no volume change

@@ -263,7 +263,7 @@ void gradient_changes(const State<M>& state, const CellView<M>& view, Real (&for
                       Real (&bishop)[State<M>::dim]) {
   constexpr int dim = State<M>::dim;
   const auto& r = state.system.response[static_cast<std::size_t>(view.entry())];
-  Real reference = 0;
+  Real reference[dim] = {};
   for (int d = 0; d < dim; ++d) force[d] = bishop[d] = 0;
   for_cells_around(view, [&](int corner, std::int32_t e) {
     const auto* u = own_unknown(state, e);
@@ -273,10 +273,12 @@ void gradient_changes(const State<M>& state, const CellView<M>& view, Real (&for
       bishop[d] += u->bishop_change * u->weight[corner][d];
     }
     const auto& cell = state.nodes.cell[static_cast<std::size_t>(e)];
-    if (cell.has_reference) reference += cell.reference_share * (u->pressure - u->start);
+    if (cell.has_reference)
+      for (int d = 0; d < dim; ++d)
+        reference[d] += cell.reference_share[d] * (u->pressure - u->start);
   });
   if (r.references > 0)
-    for (int d = 0; d < dim; ++d) force[d] -= reference / r.references * r.gradient[d];
+    for (int d = 0; d < dim; ++d) force[d] -= reference[d] / r.references * r.gradient[d];
 }
 
 /// Velocities of one node at the trial pressures.
@@ -524,7 +526,7 @@ struct NodeAssembly {
     for (int d = 0; d < dim; ++d) {
       Real force = u.quad_slope * u.weight[column][d];
       if (response.references > 0 && c.has_reference)
-        force -= c.reference_share / response.references * response.gradient[d];
+        force -= c.reference_share[d] / response.references * response.gradient[d];
       liquid_force[d] = response.liquid_part * force;
       solid_force[d] = response.bishop_part * u.bishop_slope * u.weight[column][d] -
                        response.pore_part[d] * force;

@@ -18,8 +18,8 @@ struct NodeSums {
   /// G_I = sum f V_c (p - p_ref) grad N_I [N]; p_ref is the pressure at the surface or held wall
   /// that the node's cells end at, so that uniform pressure is at rest for any cut.
   Real force[Dim] = {};
-  Real gradient[Dim] = {};  ///< sum f V_c grad N_I, zero inside [m2]
-  Real reference = 0;       ///< sum of reference pressures of the cells around [Pa]
+  Real gradient[Dim] = {};   ///< sum f V_c grad N_I, zero inside [m2]
+  Real reference[Dim] = {};  ///< sums of reference pressures of the cells around [Pa]
   int references = 0;
   Real soil_force[Dim] = {};      ///< sum f V_c S p grad N_I [N]
   Real skeleton_force[Dim] = {};  ///< - sum f V_c (mean Bishop stress) grad N_I [N]
@@ -87,10 +87,9 @@ inline constexpr int holds_soil = 6;     ///< f V_c where there is soil at all [
 // Second record:
 inline constexpr int saturation = 0;    ///< of a cell with soil [-]
 inline constexpr int conductivity = 1;  ///< of a cell with soil [m/s]
-inline constexpr int reference = 2;     ///< pressure at its surface, 0 without [Pa]
-inline constexpr int counts = 3;        ///< 1 with such a pressure, 16 with soil, 256 free water
-inline constexpr int place = 4;         ///< first of three, quadrature point in the cell
-inline constexpr int over_radius = 7;   ///< 1/r there [1/m]
+inline constexpr int counts = 3;  ///< 1 with a reference pressure, 16 with soil, 256 free water
+inline constexpr int place = 4;   ///< first of three, quadrature point in the cell
+inline constexpr int over_radius = 7;  ///< 1/r there [1/m]
 }  // namespace cell_lane
 
 /// The two records of a cell.
@@ -115,7 +114,6 @@ void prepare_cell(const State<M>& state, const Cell<State<M>::dim>& c,
   weighted[cell_lane::holds_soil] = soil ? c.quad_volume : 0;
   plain[cell_lane::saturation] = soil ? c.saturation : 0;
   plain[cell_lane::conductivity] = soil ? c.conductivity : 0;
-  plain[cell_lane::reference] = c.has_reference ? c.reference_pressure : 0;
   plain[cell_lane::counts] =
       (c.has_reference ? 1 : 0) + (soil ? 16 : 0) + (c.kind == CellKind::free ? 256 : 0);
   for (int d = 0; d < dim; ++d) plain[cell_lane::place + d] = xi[d];
@@ -173,7 +171,6 @@ struct CellSums {
     node.soil_cells = counts / 16 % 16;
     node.has_soil = node.soil_cells > 0;
     node.has_free = counts >= 256;
-    node.reference = plain[cell_lane::reference];
     node.volume = value[cell_lane::volume];
     node.soil_volume = value[cell_lane::soil_volume];
     node.pores = value[cell_lane::pores];
@@ -237,6 +234,8 @@ NodeSums<State<M>::dim> gather_node(const State<M>& state, const CellView<M>& vi
     if (inside && owner < 0) ++air;
     if (inside && owner == view.tile[at]) {
       sums.add(parts.weighted[at], parts.plain[at], corner, over_h);
+      if (nodes.cell[e].has_reference)
+        for (int d = 0; d < dim; ++d) node.reference[d] += nodes.cell[e].reference_pressure[d];
       if (state.soils.size() > 1 && nodes.cell[e].soil_share > 0)
         node.material = nodes.cell[e].material;
     }
@@ -255,7 +254,7 @@ NodeSums<State<M>::dim> gather_node(const State<M>& state, const CellView<M>& vi
   sums.store(node);
   if (node.references > 0 && !node.has_free)
     for (int d = 0; d < dim; ++d)
-      node.force[d] -= node.reference / node.references * node.gradient[d];
+      node.force[d] -= node.reference[d] / node.references * node.gradient[d];
   for (int d = 0; d < dim; ++d) {
     if (faces[d] > 0) {
       node.saturation[d] = saturation[d] / faces[d];
