@@ -156,8 +156,7 @@ TEST_CASE("conditions switch in time, and an impermeable part closes what anothe
     run.advance_to(1);
     return run.water_balance().inflow;
   };
-  // The node at the edge belongs to both parts: half a cell less.
-  CHECK(inflow(true) / inflow(false) == doctest::Approx(0.5 - 0.5 * 0.5 / 4).epsilon(0.02));
+  CHECK(inflow(true) / inflow(false) == doctest::Approx(0.5).epsilon(0.02));
 }
 
 TEST_CASE("conditions that contradict each other are refused") {

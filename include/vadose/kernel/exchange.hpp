@@ -98,6 +98,28 @@ std::int32_t flux_node(const State<M>& state, const CellView<M>& view, int axis,
   return state.grid.entry(node);
 }
 
+/// Flux per area through the ground or a wall: drag and inertia of the water at the face itself, which
+/// goes on with the velocity of its nodes before the step: q [rho / (n S dt) + gamma / k] =
+/// rho (v^l_old - v^s) / dt - H. The new velocities of the nodes answer to all the faces around them; on a
+/// staircase of cells the ground's side would drink what flows down behind it.
+template <class M>
+Real surface_flux(const State<M>& state, const CellView<M>& view, int axis, const FaceFlux& face) {
+  constexpr int dim = State<M>::dim;
+  const auto& nodes = state.nodes;
+  Real velocity = 0;
+  for_cube<dim>(0, 2, [&](const Index<dim>& corner) {
+    if (corner[axis]) return;
+    const auto i = static_cast<std::size_t>(flux_node(state, view, axis, face, corner));
+    const Record& liquid = nodes.liquid_out[i];
+    velocity += liquid[lane::velocity + axis] - liquid[lane::increment + axis];
+    if constexpr (is_deformable<M>) velocity -= nodes.solid_out[i][lane::velocity + axis];
+  });
+  constexpr Real corners = power<dim - 1>(2.0);
+  const auto& soil = soil_cell(view, axis, face);
+  return face_mobility(state, face, soil, 1) *
+         (state.water.density / state.dt * velocity / corners - face.head_gradient);
+}
+
 /// Flux per area through the lower face of a cell along an axis: the head gradient that drives the water
 /// at its nodes, as their velocities say, times the mobility of the face. (A node's own is a mean over
 /// its faces, wet and dry, inside and at the ground; across a slope they lie side by side, and the dry
@@ -107,6 +129,7 @@ std::int32_t flux_node(const State<M>& state, const CellView<M>& view, int axis,
 template <class M>
 Real nodal_flux(const State<M>& state, const CellView<M>& view, int axis, const FaceFlux& face) {
   constexpr int dim = State<M>::dim;
+  if (face.kind == FaceKind::surface) return surface_flux(state, view, axis, face);
   const auto& nodes = state.nodes;
   Real velocity = 0, head_gradient = 0, mean_gradient = 0;
   for_cube<dim>(0, 2, [&](const Index<dim>& corner) {

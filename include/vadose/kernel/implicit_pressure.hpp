@@ -572,25 +572,34 @@ struct NodeAssembly {
       for (int k = 0; k < faces.count[d]; ++k) {
         const FaceFlux& face = state.nodes.face[faces.face[d][k]];
         if (switches(face)) continue;
-        const Real weight = face.kind == FaceKind::to_free
-                                ? face.saturation
-                                : resistances[4 + d] * face_mobility(state, face, soil_of(d, k), 1);
-        add_flux(d, k, column,
-                 face.area / (corners / 2) * weight * response.porosity * (liquid[d] - solid[d]));
+        const Real area = face.area / (corners / 2);
+        if (face.kind == FaceKind::to_free) {
+          add_flux(d, k, column,
+                   area * face.saturation * response.porosity * (liquid[d] - solid[d]));
+          continue;
+        }
+        const Real mobility = face_mobility(state, face, soil_of(d, k), 1);
+        const Real drive = face.kind == FaceKind::surface
+                               ? -state.water.density / state.dt * solid[d]
+                               : resistances[4 + d] * response.porosity * (liquid[d] - solid[d]);
+        add_flux(d, k, column, area * mobility * drive);
       }
   }
 
-  /// Flux through faces by the departure of their head gradients from the mean at the node.
+  /// Flux through faces by the departure of their head gradients from the mean at the node, through
+  /// the ground and walls by the head gradients themselves.
   void add_departures(int axis) {
     const int count = faces.count[axis];
     for (int k = 0; k < count; ++k) {
       const FaceFlux& face = state.nodes.face[faces.face[axis][k]];
       if (face.kind == FaceKind::to_free || switches(face)) continue;
-      const Real mobility = face.area / (corners / 2) *
-                            face_mobility(state, face, soil_of(axis, k), checkerboard_inertia);
+      const bool surface = face.kind == FaceKind::surface;
+      const Real mobility =
+          face.area / (corners / 2) *
+          face_mobility(state, face, soil_of(axis, k), surface ? 1 : checkerboard_inertia);
       for (int j = 0; j < count; ++j) {
         const FaceFlux& other = state.nodes.face[faces.face[axis][j]];
-        const Real weight = mobility * ((j == k ? 1.0 : 0.0) - 1.0 / count);
+        const Real weight = mobility * ((j == k ? 1.0 : 0.0) - (surface ? 0.0 : 1.0 / count));
         const int above = faces.above[axis][j], below = faces.below[axis][j];
         if (above >= 0) add_flux(axis, k, above, -weight * head_slope(state, other, true));
         if (below >= 0) add_flux(axis, k, below, -weight * head_slope(state, other, false));
@@ -608,7 +617,7 @@ struct NodeAssembly {
         if (own[row]) add_rates(row, column, liquid, solid);
       if constexpr (has_skeleton<M>) add_fluxes(column, liquid, solid);
     }
-    if constexpr (has_skeleton<M> && dim > 1)
+    if constexpr (has_skeleton<M>)
       for (int d = 0; d < dim; ++d) add_departures(d);
   }
 };
