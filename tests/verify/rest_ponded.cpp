@@ -134,7 +134,7 @@ Outcome run(const Case& c) {
   CHECK(w.inflow == 0);
   CHECK(w.outflow == 0);
   out.closure = std::fabs(w.relative_closure());
-  if (c.steps <= 20000) CHECK(out.closure <= 1e-12);
+  CHECK(out.closure <= 1e-12);
   stress_error(solver, c, out);
   out.solid_speed = verify::largest_speed(solver.solid());
   out.liquid_speed = verify::largest_speed(solver.liquid());
@@ -207,22 +207,17 @@ TEST_CASE("2D ponded strip at rest, aligned points") {
 }
 
 TEST_CASE("2D ponded strip at rest, random offsets") {
-  CHECK(soil_2d().pressure() <= 10);
+  CHECK(soil_2d().pressure() <= 1);
   CHECK(soil_2d().base_stress <= 1e-3);
   CHECK(soil_2d().speed() <= 1e-3);
-  CHECK(both_2d().soil_pressure <= 10);
-  CHECK(both_2d().free_pressure <= 10);
+  CHECK(both_2d().pressure() <= 1);
   CHECK(both_2d().base_stress <= 2e-2);
   CHECK(both_2d().speed() <= 1e-3);
 }
-// Measured 7.2 Pa and 6.5e-4 m/s: grains at the fringe of the skeleton, in nodes that hold mostly
-// free water, still ring when the run starts, and die away. With offsets in the water, 1.2 %.
-TEST_CASE("known miss: 2D ponded strip, random offsets, 1 Pa and 1e-6 m/s at once" *
-          doctest::may_fail()) {
-  CHECK(soil_2d().pressure() <= 1);
+// Measured 0.9e-4 and 1.9e-4 m/s: a few grams of grains, at nodes that hold mostly free water, creep
+// when the run starts, and die away. With offsets in the water, 1.2 %.
+TEST_CASE("known miss: 2D ponded strip, random offsets, 1e-6 m/s at once" * doctest::may_fail()) {
   CHECK(soil_2d().speed() <= 1e-6);
-  CHECK(both_2d().soil_pressure <= 1);
-  CHECK(both_2d().free_pressure <= 1);
   CHECK(both_2d().base_stress <= 1e-3);
   CHECK(both_2d().speed() <= 1e-6);
 }
@@ -269,15 +264,7 @@ TEST_SUITE("long") {
     CHECK(long_1d().pressure() <= 1e-3);
     CHECK(run<M1>({.jitter = 0.2, .free_jitter = true, .steps = 100000}).pressure() <= 1);
     CHECK(long_2d().pressure() <= 1e-3);
-    CHECK(long_both_2d().pressure() <= 5);
-    for (const Outcome* o : {&long_1d(), &long_2d(), &long_both_2d()}) CHECK(o->closure <= 1e-11);
-  }
-  // Measured 2.6 Pa at random offsets, where grains at the fringe of the skeleton ring; the ledger
-  // drifts by round-off of one sign, 1.5e-12 in 1D and 2.9e-12 in 2D with aligned points.
-  TEST_CASE("known miss: ponded strip over 1e5 steps, 1 Pa and a ledger of 1e-12" *
-            doctest::may_fail()) {
     CHECK(long_both_2d().pressure() <= 1);
-    CHECK(long_1d().closure <= 1e-12);
-    CHECK(long_2d().closure <= 1e-12);
+    for (const Outcome* o : {&long_1d(), &long_2d(), &long_both_2d()}) CHECK(o->closure <= 1e-12);
   }
 }
