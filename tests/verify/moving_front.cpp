@@ -17,14 +17,15 @@ using Soil = vd::UnsaturatedModel<K>;
 using Moving = Soil<vd::Uniaxial>;
 using Turning = Soil<vd::PlaneStrain>;
 
-/// Soil whose nodes all move with a velocity.
+/// Soil whose nodes all move with a velocity: its stiffness bears on the step alone.
 template <class M = Moving>
-vd::Material<M> soil(Real a, Real lambda, Real conductivity, bool porosity_dependent = false) {
+vd::Material<M> soil(Real a, Real lambda, Real conductivity, bool porosity_dependent = false,
+                     Real young_modulus = 1e6) {
   return {.name = "soil",
           .solid_density = 2650,
           .porosity = 0.4,
           .lambda = lambda,
-          .skeleton = {.young_modulus = 1e6, .poisson_ratio = 0.2},
+          .skeleton = {.young_modulus = young_modulus, .poisson_ratio = 0.2},
           .retention = {.a = a, .porosity_dependent = porosity_dependent},
           .conductivity = {.saturated_conductivity = conductivity,
                            .porosity_dependent = porosity_dependent}};
@@ -165,7 +166,8 @@ void check_rain(Real h, Real bound, const std::vector<Real>& times) {
   vd::Scene<Moving> scene({.box = {Vec<1>(0.0), Vec<1>(room)}, .cell_size = h});
   scene.gravity[0] = -9.81;
   scene.liquid.bulk_modulus = 1e6;
-  scene.add_soil(vd::box({start}, {start + height}), soil(3, 0.63, 1e-4), {.saturation = 0.3});
+  scene.add_soil(vd::box({start}, {start + height}), soil(3, 0.63, 1e-4, false, 1e4),
+                 {.saturation = 0.3});
   scene.add(vd::bc::PrescribedVelocity<1>{.region = vd::box({0.0}, {room}),
                                           .velocity = Vec<1>(velocity)});
   scene.add(vd::bc::Rain{.rate = 0.3e-4});
