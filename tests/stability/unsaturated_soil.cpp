@@ -146,6 +146,39 @@ TEST_CASE("drained to S_e = 0.15 and filled again through S = 1, twice") {
   }
 }
 
+TEST_CASE("a pulp of dispersed grains under pressure comes apart with the energy of its water") {
+  constexpr Real pressure = 1e5, porosity = 0.7, h = 0.1;
+  vd::Scene<Column> scene({.box = {Vec<1>(0.0), Vec<1>(1.0)}, .cell_size = h});
+  scene.liquid.bulk_modulus = 2e7;
+  auto soil = sand<Column>();
+  soil.porosity = porosity;
+  soil.skeleton.young_modulus = 1e3;
+  soil.conductivity.saturated_conductivity = 1e-6;
+  scene.add_soil(vd::box(Vec<1>(0.0), Vec<1>(0.5)), soil,
+                 {.liquid_pressure = [](const Vec<1>&) { return pressure; }});
+  scene.add(vd::bc::Fixed{.face = vd::Face::bottom});
+  vd::Solver<Column> solver(scene);
+  const Real stored = 0.5 * porosity * pressure * pressure / (2 * 2e7);
+  Real most = 0;
+  for (int i = 0; i < 1000; ++i) {
+    const auto step = solver.step();
+    if (step.status != vd::Status::ok) FAIL(step.text());
+    Real energy = 0;
+    const auto add = [&](const auto& points) {
+      points.for_each([&](std::size_t b, int l) {
+        energy += 0.5 * points.at(vd::field::mass, b)[l] *
+                  vd::power<2>(points.at(vd::field::velocity, b)[l]);
+      });
+    };
+    add(solver.solid());
+    add(solver.liquid());
+    most = std::max(most, energy);
+  }
+  MESSAGE("kinetic energy up to ", most, " J, stored at first ", stored, " J");
+  CHECK(most >= 0.5 * stored);
+  CHECK(most <= stored);
+}
+
 // Water hits soil at 3 m/s: sound carries rho c v = 95 kPa. The splash reaches the side walls after 0.23 s.
 TEST_CASE("water falls on moist and on saturated soil") {
   for (const Real start : {0.3, 1.0}) {

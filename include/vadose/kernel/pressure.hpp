@@ -77,9 +77,23 @@ void spread_rates(State<M>& state) {
 /// apart keeps this porosity.
 inline constexpr Real dispersed_porosity = 0.7;
 
-/// Factor of the bulk volume of pore water of porosity n over a step of volume strain dt div v^s.
-VADOSE_INLINE Lanes volume_stretch(const Lanes& porosity, const Lanes& strain) noexcept {
-  return min(exp(strain), (Lanes(1.0) - porosity) * Lanes(1 / (1 - dispersed_porosity)));
+/// Factor of the bulk volume of points of porosity n over a step of volume strain dt div v^s. Dispersed
+/// grains keep theirs, unless water that fills their pores presses them apart: held back, its pressure
+/// would do work without falling (a pulp of n = 0.7 blew itself up from 14 to 280 J within 1 ms).
+template <class M>
+VADOSE_INLINE Lanes volume_stretch(const State<M>& state, const CellFinder<State<M>::dim>& cells,
+                                   const std::int32_t* entries, const Lanes& porosity,
+                                   const Lanes& strain) noexcept {
+  const Lanes follows = exp(strain);
+  const Lanes limit =
+      max(Lanes(1.0), (Lanes(1.0) - porosity) * Lanes(1 / (1 - dispersed_porosity)));
+  if (!any(limit < follows)) return follows;
+  alignas(64) double pressure[lane_count];
+  for (int l = 0; l < lane_count; ++l) {
+    const std::int32_t owner = state.nodes.dof[static_cast<std::size_t>(entries[cells.index[l]])];
+    pressure[l] = owner < 0 ? 0 : state.nodes.cell[static_cast<std::size_t>(owner)].pressure;
+  }
+  return select(Lanes(0.0) < Lanes::load(pressure), follows, min(follows, limit));
 }
 
 /// Pressures of the cells as the points read them, in the blocks that are sought.
@@ -143,7 +157,8 @@ void sum_content(State<M>& state) {
       Lanes volume = state.liquid.load(field::volume, b);
       if constexpr (Stretched) {
         const Lanes rate = cell_rates(state, cells, entries, Lanes(0.0));
-        const Lanes stretch = volume_stretch(porosity, Lanes(state.dt) * rate);
+        const Lanes stretch =
+            volume_stretch(state, cells, entries, porosity, Lanes(state.dt) * rate);
         volume = volume * stretch;
         porosity = Lanes(1.0) - (Lanes(1.0) - porosity) / stretch;
       }

@@ -234,9 +234,9 @@ VADOSE_INLINE void update_solid_batch(State<M>& state, std::size_t b,
   const Lanes hoop = motion.velocity[0] * over_radius<K, dim>(x, Real(0));
   auto rate = rate_of_deformation<n>(motion.gradient, hoop);
   Lanes volume_rate = rate.trace();
+  [[maybe_unused]] CellFinder<dim> cells;
+  if constexpr (has_liquid<M>) cells.find(frame, x);
   if constexpr (RateByCell) {
-    CellFinder<dim> cells;
-    cells.find(frame, x);
     const Lanes own = volume_rate;
     volume_rate = cell_rates(state, cells, entries, own);
     rate.add_isotropic((volume_rate - own) * Lanes(1.0 / 3.0));
@@ -261,8 +261,13 @@ VADOSE_INLINE void update_solid_batch(State<M>& state, std::size_t b,
     for (int i = 0; i < state_size; ++i) points.store(field::law_state, b, i, numbers[i]);
 
   const Lanes grains = points.load(field::mass, b) * Lanes(1 / soil.material.solid_density);
-  Lanes volume = points.load(field::volume, b) * exp(Lanes(dt) * volume_rate);
-  if constexpr (has_liquid<M>) volume = min(volume, grains * Lanes(1 / (1 - dispersed_porosity)));
+  Lanes volume = points.load(field::volume, b);
+  if constexpr (has_liquid<M>)
+    volume *=
+        volume_stretch(state, cells, entries, Lanes(1.0) - grains / max(volume, Lanes(1e-300)),
+                       Lanes(dt) * volume_rate);
+  else
+    volume *= exp(Lanes(dt) * volume_rate);
   points.store(field::volume, b, volume);
   const Lanes mass = points.load(field::mass, b);
   const Lanes alive_mass = max(mass, Lanes(1e-300));
@@ -675,7 +680,7 @@ VADOSE_INLINE void carry_pore_water(State<M>& state, std::size_t b,
     for (int d = 0; d < dim; ++d) trace += carried.gradient[d][d];
     const Lanes rate = cell_rates(state, cells, entries, trace);
     const Lanes n = points.load(field::porosity, b);
-    const Lanes stretch = volume_stretch(n, Lanes(state.dt) * rate);
+    const Lanes stretch = volume_stretch(state, cells, entries, n, Lanes(state.dt) * rate);
     points.store(field::volume, b, points.load(field::volume, b) * stretch);
     points.store(field::porosity, b, Lanes(1.0) - (Lanes(1.0) - n) / stretch);
     update_half_sizes(points, b, carried.gradient, state.dt, state.grid.cell_size());
