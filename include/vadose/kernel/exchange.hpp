@@ -101,7 +101,9 @@ std::int32_t flux_node(const State<M>& state, const CellView<M>& view, int axis,
 /// Flux per area through the ground or a wall: drag and inertia of the water at the face itself, which
 /// goes on with the velocity of its nodes before the step: q [rho / (n S dt) + gamma / k] =
 /// rho (v^l_old - v^s) / dt - H. The new velocities of the nodes answer to all the faces around them; on a
-/// staircase of cells the ground's side would drink what flows down behind it.
+/// staircase of cells the ground's side would drink what flows down behind it. Water from beyond starts at
+/// rest: it enters no faster than its head drives it. (With inertia, grains that fly off the ground would
+/// draw water after them, more of it the faster they are.)
 template <class M>
 Real surface_flux(const State<M>& state, const CellView<M>& view, int axis, const FaceFlux& face) {
   constexpr int dim = State<M>::dim;
@@ -116,8 +118,12 @@ Real surface_flux(const State<M>& state, const CellView<M>& view, int axis, cons
   });
   constexpr Real corners = power<dim - 1>(2.0);
   const auto& soil = soil_cell(view, axis, face);
-  return face_mobility(state, face, soil, 1) *
-         (state.water.density / state.dt * velocity / corners - face.head_gradient);
+  const Real flux = face_mobility(state, face, soil, 1) *
+                    (state.water.density / state.dt * velocity / corners - face.head_gradient);
+  const Real inward = face.soil_below ? face.head_gradient : -face.head_gradient;
+  const Real most =
+      face.conductivity * max(0.0, inward) / state.soils[soil.material].material.unit_weight;
+  return face.soil_below ? max(flux, -most) : min(flux, most);
 }
 
 /// Flux per area through the lower face of a cell along an axis: the head gradient that drives the water
@@ -160,8 +166,8 @@ void find_flux(const State<M>& state, const CellView<M>& view, int axis, FaceFlu
     return;
   }
   Real flux = nodal_flux(state, view, axis, face);
-  // Water enters or leaves at a held pressure only down its head gradient, but for its inertia where
-  // it may pass both ways anywhere.
+  // Water leaves at a held pressure only down its head gradient, but for its inertia where it may pass
+  // both ways anywhere.
   if (face.kind == FaceKind::surface && flux * face.head_gradient > 0) {
     const bool both = face.held >= 0 && !face.fed &&
                       state.held[static_cast<std::size_t>(face.held)].kind == HeldKind::open;
