@@ -2,9 +2,6 @@
 // [Zhan] 4.2: a pond of free liquid points sinks into 10 m of clay, rigid or elastic
 // (tests/reference/r3_pond_profiles.csv; pond left and heave of its summary).
 
-#include <algorithm>
-#include <vector>
-
 #include "cases/pond.hpp"
 #include "check_case.hpp"
 
@@ -46,23 +43,11 @@ TEST_CASE("pond of 0.5 m on rigid clay") {
   verify::check(Pond<Rigid>{}, {.cells = 20});
 }
 
-namespace {
-
-const verify::Outcome& elastic() {
-  static const verify::Outcome outcome = verify::run(Pond<Elastic>{}, {.cells = 20});
-  return outcome;
-}
-
-}  // namespace
-
 TEST_CASE("pond of 0.5 m on elastic clay") {
-  verify::Outcome others = elastic();
-  std::erase_if(others.comparisons, [](const auto& c) { return c.quantity == "pond left"; });
-  verify::check_outcome(Pond<Elastic>{}, others);
-  for (const auto& c : elastic().comparisons)
-    if (c.quantity == "pond left") CHECK(c.norm().rms() <= 0.025);
+  verify::check(Pond<Elastic>{}, {.cells = 20});
 }
-// Measured 2.3 % at h = 0.5 m: the ground lies within a cell and the water on it is a film at the end.
-TEST_CASE("known miss: pond left on elastic clay within 2 %" * doctest::may_fail()) {
-  verify::check_outcome(Pond<Elastic>{}, elastic());
+TEST_SUITE("long") {
+  TEST_CASE("pond of 0.5 m on elastic clay, water of 2.2 GPa") {
+    verify::check(Pond<Elastic>{.bulk_modulus = 2.2e9}, {.cells = 20});
+  }
 }
