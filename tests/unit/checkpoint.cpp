@@ -279,9 +279,9 @@ Real fuzz_seconds() {
   return given ? std::strtod(given, nullptr) : 0;
 }
 
-/// Writes damaged copies of a file, at least so many, and takes them up: each is refused with InputError and leaves the
-/// solver as it was, or is taken and the solver can step. `repair`: the checksums are made good again,
-/// so that the damage reaches the values.
+/// Writes damaged copies of a file, at least so many, and takes them up: each is refused with InputError
+/// and leaves the solver as it was, or is taken and the solver can step. `repair`: the checksums are made
+/// good again, so that the damage reaches the values.
 template <class S>
 FuzzCount fuzz(S run, int files, unsigned seed, bool repair) {
   using vd::io::detail::CheckpointHead;
