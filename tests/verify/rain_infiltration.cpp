@@ -352,7 +352,7 @@ TEST_SUITE("long") {
     check_rain<M1>(0.1, 0.015, {600, 1500, 3000, 4500});
     check_rain<M1>(0.05, 0.008, {600, 1500, 3000, 4500});
     check_rain<M2>(0.1, 0.015, {600, 1500, 3000, 4500});
-    check_rain<M3>(0.1, 0.015, {600});
+    check_rain<M3>(0.1, 0.015, {600, 1500, 3000, 4500});
   }
   TEST_CASE("closed column to 5400 s") {
     for (const char* name : {"rise", "drainage"})
