@@ -534,13 +534,12 @@ void store_velocities(State<M>& state, std::size_t i, const NodeMotion<State<M>:
 }
 
 /// Head gradient that drives the flow through the soil at a node along an axis, per n (v^l - v^s):
-/// gamma / k of its soil and the inertia of a step [Pa s/m2].
+/// linear drag of its soil and the inertia of a step [Pa s/m2].
 template <class M>
 Real resistance(const State<M>& state, const NodeSums<State<M>::dim>& sums, int axis) noexcept {
   if (!(sums.soil_volume > 0) || !(sums.conductivity[axis] > 0)) return 0;
-  return state.water.density / (sums.porosity() * state.dt) +
-         sums.soil_share() * sums.saturation[axis] *
-             state.soils[sums.material].material.unit_weight / sums.conductivity[axis];
+  return (state.water.density / state.dt + drag_coefficient(state, sums, sums.soil_share(), axis)) /
+         sums.porosity();
 }
 
 /// Writes the results of one node.
