@@ -115,6 +115,39 @@ TEST_CASE("rigid skeleton: infiltration into sand against Richards' equation, 30
   CHECK(order > 0.9);
 }
 
+namespace {
+
+/// Gravel in which the flow is fast enough for its inertia in the pores to count.
+struct Gravel : vd::UnsaturatedModel<vd::Uniaxial> {
+  using Skeleton = vd::law::Rigid;
+  using Drag = vd::drag::Forchheimer;
+};
+
+}  // namespace
+
+// Water under its own weight through a saturated column: A w + B w^2 = gamma, q = n w.
+TEST_CASE("percolation through gravel by Forchheimer's law, ground and wall included") {
+  constexpr Real conductivity = 0.05, unit_weight = 1000 * gravity;
+  vd::Scene<Gravel> scene({.box = {Vec<1>(0.0), Vec<1>(1.2)}, .cell_size = 0.1});
+  scene.gravity[0] = -gravity;
+  scene.liquid.bulk_modulus = 2e6;
+  auto gravel = sand<Gravel>();
+  gravel.conductivity.saturated_conductivity = conductivity;
+  scene.add_soil(vd::box(Vec<1>(0.0), Vec<1>(1.0)), gravel, {.suction = 0});
+  scene.add(vd::bc::Drained{.face = vd::Face::bottom});
+  scene.add(vd::bc::ZeroSuction{});
+  vd::Solver<Gravel> solver(scene);
+  solver.advance_to(2);
+  const Real before = solver.water_balance().outflow;
+  solver.advance_to(4);
+  const Real flux = (solver.water_balance().outflow - before) / 1000 / 2;
+  const Real a = gravel.drag.coefficient(porosity, Real(1), conductivity, unit_weight);
+  const Real b = gravel.drag.quadratic(porosity, Real(1), conductivity, unit_weight, Real(1000));
+  const Real expected = porosity * 2 * unit_weight / (a + std::sqrt(a * a + 4 * b * unit_weight));
+  MESSAGE("flux ", flux, " m/s, expected ", expected, ", Darcy's ", conductivity);
+  CHECK(verify::close(flux, expected, 0.005));
+}
+
 TEST_SUITE("long") {
   TEST_CASE("rigid skeleton: infiltration into sand against Richards' equation" *
             doctest::may_fail()) {  // see the known miss above
