@@ -249,6 +249,6 @@ TEST_SUITE("long") {
     }
     MESSAGE("largest |dp| ", norm.max, " Pa, closure ", solver.water_balance().relative_closure());
     CHECK(norm.max <= 1);
-    CHECK(std::fabs(solver.water_balance().relative_closure()) <= 1e-11);
+    CHECK(std::fabs(solver.water_balance().relative_closure()) <= 1e-12);
   }
 }
