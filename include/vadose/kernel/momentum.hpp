@@ -387,6 +387,9 @@ void apply_special(const State<M>& state, std::int32_t entry, NodeMotion<State<M
     if (d != n) node.solid[d] *= keep;
 }
 
+/// Soil is not drier than this for the drag [-].
+inline constexpr Real least_saturation = 1e-12;
+
 /// DEVIATION: [Zhan] Eq. (20) prints n m g / k without S; Eq. (2) has it, and so has this.
 /// Drag per velocity of a node along each axis for a law linear in the relative velocity: its
 /// coefficient, per volume of liquid, times the liquid volume in the soil at the node. That is the mass
@@ -396,7 +399,7 @@ void apply_special(const State<M>& state, std::int32_t entry, NodeMotion<State<M
 template <class M>
 Real drag_coefficient(const State<M>& state, const NodeSums<State<M>::dim>& sums,
                       Real liquid_volume, int axis) {
-  const Real s = max(sums.saturation[axis], 1e-12);
+  const Real s = max(sums.saturation[axis], least_saturation);
   const Real k = sums.conductivity[axis];
   const auto& material = state.soils[sums.material].material;
   if (!(k > 0)) return 1e30;
@@ -423,7 +426,7 @@ Real quadratic_drag_factor(const State<M>& state, const NodeSums<State<M>::dim>&
       w2 += w * w;
       a += linear[d] / dim;
       k += sums.conductivity[d] / dim;
-      s += max(sums.saturation[d], 1e-12) / dim;
+      s += max(sums.saturation[d], least_saturation) / dim;
     }
     const auto& material = state.soils[sums.material].material;
     const Real b = liquid_volume * drag::quadratic<Real>(material.drag, sums.porosity(), s, k,
