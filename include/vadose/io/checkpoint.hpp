@@ -272,8 +272,8 @@ class ReadPoints {
   typename Points::Storage stored_;
 };
 
-/// What hosts, output and resampling (the kind of every cell, slivers too) read of the cells between
-/// steps. Steps read nothing else of the grid that an earlier step left there.
+/// What hosts, output, resampling (the kind of every cell, slivers too) and the search for the next step
+/// read of the cells. Steps read nothing else of the grid that an earlier step left there.
 template <class A, class G>
 void put_cells(A& a, G& nodes) {
   const std::size_t size = nodes.dof.size();
@@ -296,6 +296,7 @@ void put_cells(A& a, G& nodes) {
     a.value("cell porosity", cell.porosity);
     a.value("cell water", cell.water);
     a.value("cell fill", cell.raw_fill);
+    a.value("closing of the pores of a cell", cell.closing);
     for (auto& x : cell.centroid) a.value("cell centroid", x);
   }
 }

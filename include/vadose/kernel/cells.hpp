@@ -216,6 +216,10 @@ void classify_cells(State<M>& state) {
 /// fills just half a cell does not change sides by round-off.
 inline constexpr Real sliver_fill = 0.47;
 
+/// Below this fill a sliver of free water on the ground becomes a film: before it stands alone, where for
+/// one step neither its pressure nor that of a film would rest on the soil.
+inline constexpr Real film_fill = 0.48;
+
 /// The neighbour a sliver shares its pressure with: the face neighbour of the same kind that is no
 /// sliver and in whose direction the fill grows most; at corners, where no face neighbour is full
 /// enough, the fullest diagonal one; -1 if the cell is no sliver or stands alone.
@@ -446,8 +450,10 @@ template <class M>
 void gather_cells(State<M>& state) {
   for_cells(state.grid, state.options.threads,
             [&](std::int32_t e, const Index<State<M>::dim>& local, int slot, int) {
-              if (state.nodes.dof[static_cast<std::size_t>(e)] != e) return;
-              gather_cell(state, CellView<M>(state, local, slot));
+              if (state.nodes.dof[static_cast<std::size_t>(e)] == e)
+                gather_cell(state, CellView<M>(state, local, slot));
+              else
+                state.nodes.cell[static_cast<std::size_t>(e)].closing = unset;
             });
 }
 

@@ -349,6 +349,15 @@ void fill_submerged_pores(State<M>& state) {
   });
 }
 
+/// How fast the air-filled pores of the cells close: the next step must see their end coming.
+template <class M>
+void find_closing(State<M>& state) {
+  for_pressure_cells(state, [&](Cell<State<M>::dim>& cell, std::int32_t, int) {
+    const Real bulk = cell.soil_pores / cell.soil_porosity;
+    cell.closing = cell.gain / (state.water.density * state.dt) - bulk * cell.skeleton_rate;
+  });
+}
+
 /// Step 8: what the fluxes bring to cells, films and submerged pores.
 template <class M>
 void book_fluxes(State<M>& state) {
@@ -356,6 +365,7 @@ void book_fluxes(State<M>& state) {
   find_gains(state);
   settle_films(state);
   fill_submerged_pores(state);
+  if constexpr (is_unsaturated<M>) find_closing(state);
 }
 
 /// Step 4 (fluxes) and 8 (gains of cells).

@@ -79,18 +79,52 @@ Real step_share(const Cell<Dim>& c) noexcept {
   return c.at_air && (c.members > 1 || c.raw_fill < 0.95) ? cut_cell_step : 1;
 }
 
-/// Highest frequency squared of a soil cell, over the square of the part of 2/omega that it allows.
+/// Highest frequency squared of a soil cell of effective modulus K* [Pa] and saturation S [-], over the
+/// square of the part of 2/omega that it allows.
 template <class M>
-Real cell_frequency2(const State<M>& state, const Cell<State<M>::dim>& c) noexcept {
+Real cell_frequency2(const State<M>& state, const Cell<State<M>::dim>& c, Real modulus,
+                     Real saturation) noexcept {
   const Real h = state.grid.cell_size();
   const Real rho = state.water.density;
   const auto& soil = state.soils[c.material];
   const Real w2 = is_rigid<M>
-                      ? seepage_frequency2(c.modulus, rho, h)
-                      : two_phase_frequency2(soil.p_wave_modulus, c.modulus, c.porosity,
-                                             c.saturation, soil.material.solid_density, rho, h);
+                      ? seepage_frequency2(modulus, rho, h)
+                      : two_phase_frequency2(soil.p_wave_modulus, modulus, c.porosity, saturation,
+                                             soil.material.solid_density, rho, h);
   const Real share = step_share(c);
   return w2 / (share * share);
+}
+
+/// Part of the time until the air-filled pores of a cell have closed that one step may take [-].
+inline constexpr Real closing_share = 0.5;
+
+/// Highest frequency squared that a cell will have in a step: where little air is left, K* leaps to that of
+/// water within it. `speed` bounds that of all points [m/s].
+template <class M>
+Real coming_frequency2(const State<M>& state, const Cell<State<M>::dim>& c, Real speed) noexcept {
+  const Real now = cell_frequency2(state, c, c.modulus, c.saturation);
+  if constexpr (is_unsaturated<M>) {
+    const Real air = max(0.0, c.pore_volume - c.content);
+    const Real bulk = c.pore_volume / c.porosity;
+    const Real known = is_finite(c.closing)
+                           ? c.closing
+                           : 2 * State<M>::dim * speed / state.grid.cell_size() * bulk;
+    // A step of closing_share air / closing has this 2/omega.
+    const Real coming = 2 * max(0.0, known) / closing_share;
+    if (coming * coming <= now * air * air) return now;
+    const Real full = cell_frequency2(state, c, state.water.bulk_modulus, 1);
+    return coming * coming < full * air * air ? coming * coming / (air * air) : max(now, full);
+  } else {
+    return now;
+  }
+}
+
+/// Highest speed of points in the last step [m/s].
+template <class M>
+Real highest_speed(const State<M>& state) noexcept {
+  Real speed2 = 0;
+  for (const StepSums& s : state.sums) speed2 = max(speed2, s.max_speed2);
+  return std::sqrt(speed2);
 }
 
 /// Largest step of the water and the soil it fills, 2/omega, over all cells.
@@ -101,6 +135,7 @@ StableStep wet_step(State<M>& state) {
   const auto slots = static_cast<std::size_t>(state.grid.slots());
   nodes.frequency2.assign(slots, 0);
   nodes.sought.assign(slots, 0);  // whether there is free water
+  const Real speed = highest_speed(state);
   parallel_for(slots, state.options.threads, [&](std::size_t s, int) {
     Real most = 0;
     for (std::size_t i = s * cells; i < (s + 1) * cells; ++i) {
@@ -109,7 +144,7 @@ StableStep wet_step(State<M>& state) {
       if (c.kind == CellKind::free) {
         nodes.sought[s] = 1;
       } else if constexpr (has_skeleton<M>) {
-        if (c.saturation > 0) most = max(most, cell_frequency2(state, c));
+        if (c.saturation > 0) most = max(most, coming_frequency2(state, c, speed));
       }
     }
     nodes.frequency2[s] = most;
@@ -151,15 +186,12 @@ void begin_step(State<M>& state, Real dt) {
 template <class M>
 void take_common_limits(const State<M>& state, StableStep& step) {
   const Real h = state.grid.cell_size();
-  Real wave2 = 0, speed2 = 0;
-  for (const StepSums& s : state.sums) {
-    wave2 = max(wave2, s.max_wave2);
-    speed2 = max(speed2, s.max_speed2);
-  }
+  Real wave2 = 0;
+  for (const StepSums& s : state.sums) wave2 = max(wave2, s.max_wave2);
+  const Real speed = highest_speed(state);
   if (wave2 > 0) step.take(h / std::sqrt(wave2), StepLimit::skeleton);
   step.dt *= state.options.courant;
-  if (speed2 > 0)
-    step.take(state.options.displacement_cap * h / std::sqrt(speed2), StepLimit::motion);
+  if (speed > 0) step.take(state.options.displacement_cap * h / speed, StepLimit::motion);
   step.take(state.options.dt_max, StepLimit::user);
 }
 

@@ -18,7 +18,8 @@ bool is_film(const State<M>& state, const RainColumn<State<M>::dim>& column) {
   const auto& cell = state.nodes.cell[e];
   if (!(state.nodes.free[e][lane::free_volume] > 0)) return false;
   if (cell.kind == CellKind::soil) return true;
-  if (state.nodes.dof[e] != column.top || !cell.drop || column.top_cell[up] == 0) return false;
+  const bool thin = cell.members == 1 && cell.raw_fill < kernel::film_fill;
+  if (state.nodes.dof[e] != column.top || !thin || column.top_cell[up] == 0) return false;
   Index<State<M>::dim> below = column.top_cell;
   --below[up];
   const auto b = static_cast<std::size_t>(state.grid.entry(below));
