@@ -46,6 +46,7 @@
 #include <vadose/kernel/batch.hpp>
 #include <vadose/kernel/cells.hpp>
 #include <vadose/kernel/exchange.hpp>
+#include <vadose/kernel/face_mobility.hpp>
 #include <vadose/kernel/faces.hpp>
 #include <vadose/kernel/grid_state.hpp>
 #include <vadose/kernel/map_to_grid.hpp>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The step that the solver takes: equal to C 2/omega of DESIGN section 3, close to the true limit
+// The step that the solver takes: equal to C 2/omega, close to the true limit
 // of the scheme on aligned points with linear shape functions, stable for every basis at default C.
 
 #include <doctest/doctest.h>
@@ -20,8 +20,7 @@ using verify::Moist;
 using verify::Wet;
 struct Water : vd::FreeWaterModel<vd::Uniaxial> {};
 
-/// Step limit 2/omega of soil with pore water, drag implicit, written out as in DESIGN section 3,
-/// step 10.
+/// Step limit 2/omega of soil with pore water, drag implicit, written out.
 Real two_phase_step(Real h, Real stiffness, Real saturation, Real capacity, Real porosity,
                     Real solid_density, Real bulk_modulus) {
   const Real k_star = saturation / (saturation / bulk_modulus + capacity);

@@ -2,7 +2,7 @@
 #pragma once
 
 /// \file
-/// Step 1 of DESIGN: from liquid points to cells: water, pores, fill, kind, pressure unknowns.
+/// Step 1: from liquid points to cells: water, pores, fill, kind, pressure unknowns.
 
 #include <algorithm>
 

@@ -45,26 +45,6 @@ void find_rates(State<M>& state) {
             });
 }
 
-/// Linear drag coefficient A at a face whose conductivity is not 0, per volume of liquid [kg/(m3 s)].
-template <class M>
-Real face_drag(const State<M>& state, const FaceFlux& face,
-               const Cell<State<M>::dim>& soil) noexcept {
-  const auto& material = state.soils[soil.material].material;
-  return drag::coefficient<Real>(material.drag, soil.porosity, face.saturation, face.conductivity,
-                                 material.unit_weight);
-}
-
-/// Answer of the water at a face to a head gradient over one step, with linear drag and `inertia` times
-/// its inertia: flux per area M H, M = n S [inertia rho / dt + A]^-1 [m3 s/kg]. In the limit of Darcy's
-/// drag it is k / gamma.
-template <class M>
-Real face_mobility(const State<M>& state, const FaceFlux& face, const Cell<State<M>::dim>& soil,
-                   Real inertia) noexcept {
-  if (!(face.saturation > 0) || !(face.conductivity > 0)) return 0;
-  return soil.porosity * face.saturation /
-         (inertia * state.water.density / state.dt + face_drag(state, face, soil));
-}
-
 /// Inertia in the mobility that acts against the head gradient which nodal means do not see: this much
 /// keeps its explicit use stable in three dimensions at the default step (amplification of the
 /// checkerboard 1 - 4 dim (c dt / h)^2 / 4).
@@ -73,29 +53,10 @@ inline constexpr Real checkerboard_inertia = 4;
 /// Part of the liquid's velocity at a boundary face that is left after a step of drag alone:
 /// [1 + dt A / rho]^-1, 0 in the drag limit.
 template <class M>
-Real inertia_share(const State<M>& state, const CellView<M>& view, int axis,
-                   const FaceFlux& face) noexcept {
+Real inertia_share(const State<M>& state, const FaceFlux& face,
+                   const Cell<State<M>::dim>& soil) noexcept {
   if (!(face.conductivity > 0)) return 0;
-  return 1 /
-         (1 + state.dt / state.water.density * face_drag(state, face, soil_cell(view, axis, face)));
-}
-
-/// What a quadratic drag term divides the flux at a face by: with a = n S / M and the root of
-/// a w + B |w| w = H, (1 + sqrt(1 + 4 B |H| / a^2)) / 2; 1 without one.
-template <class M>
-Real quadratic_face_factor(const State<M>& state, const FaceFlux& face,
-                           const Cell<State<M>::dim>& soil, Real mobility, Real drive) noexcept {
-  if constexpr (!QuadraticDrag<typename M::Drag>) {
-    return 1;
-  } else {
-    if (!(mobility > 0)) return 1;
-    const auto& material = state.soils[soil.material].material;
-    const Real b =
-        drag::quadratic<Real>(material.drag, soil.porosity, face.saturation, face.conductivity,
-                              material.unit_weight, state.water.density);
-    const Real over_a = mobility / (soil.porosity * face.saturation);
-    return 0.5 * (1 + std::sqrt(1 + 4 * b * std::fabs(drive) * over_a * over_a));
-  }
+  return 1 / (1 + state.dt / state.water.density * face_drag(state, face, soil));
 }
 
 /// Entry of the node that gives the velocity at a corner of a face. At the surface of a sliver it is
@@ -144,11 +105,21 @@ Real surface_flux(const State<M>& state, const CellView<M>& view, int axis, cons
   constexpr Real corners = power<dim - 1>(2.0);
   const auto& soil = soil_cell(view, axis, face);
   const Real drive = state.water.density / state.dt * velocity / corners - face.head_gradient;
-  const Real mobility = face_mobility(state, face, soil, 1);
-  const Real flux = mobility * drive / quadratic_face_factor(state, face, soil, mobility, drive);
+  const Real flux = driven_flux(state, face, soil, drive, 1).value;
   const Real inward = face.soil_below ? face.head_gradient : -face.head_gradient;
-  const Real most = face_mobility(state, face, soil, 0) * max(0.0, inward);
+  const Real most = driven_flux(state, face, soil, max(0.0, inward), 0).value;
   return face.soil_below ? max(flux, -most) : min(flux, most);
+}
+
+/// Part of the water that leaves at a held pressure [-]: all of it down its head gradient, else what drag
+/// leaves of its inertia where it may pass both ways anywhere.
+template <class M>
+Real leaving_share(const State<M>& state, const CellView<M>& view, int axis, const FaceFlux& face,
+                   Real flux) noexcept {
+  if (flux * face.head_gradient <= 0) return 1;
+  const bool both = face.held >= 0 && !face.fed &&
+                    state.held[static_cast<std::size_t>(face.held)].kind == HeldKind::open;
+  return both ? inertia_share(state, face, soil_cell(view, axis, face)) : 0;
 }
 
 /// Flux per area through the lower face of a cell along an axis: the head gradient that drives the water
@@ -191,13 +162,7 @@ void find_flux(const State<M>& state, const CellView<M>& view, int axis, FaceFlu
     return;
   }
   Real flux = nodal_flux(state, view, axis, face);
-  // Water leaves at a held pressure only down its head gradient, but for its inertia where it may pass
-  // both ways anywhere.
-  if (face.kind == FaceKind::surface && flux * face.head_gradient > 0) {
-    const bool both = face.held >= 0 && !face.fed &&
-                      state.held[static_cast<std::size_t>(face.held)].kind == HeldKind::open;
-    flux *= both ? inertia_share(state, view, axis, face) : 0;
-  }
+  if (face.kind == FaceKind::surface) flux *= leaving_share(state, view, axis, face, flux);
   face.flux = face.area * flux;
   if (face.fed)  // no more than there is
     face.flux = face.soil_below ? max(face.flux, -face.supply) : min(face.flux, face.supply);

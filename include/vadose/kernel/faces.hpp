@@ -4,6 +4,7 @@
 /// \file
 /// Step 4: faces between cells: head gradient, upstream saturation, conductivity.
 
+#include <vadose/kernel/face_mobility.hpp>
 #include <vadose/kernel/rain.hpp>
 
 namespace vadose::kernel {
@@ -77,7 +78,7 @@ void find_conductivities(State<M>& state) {
                });
 }
 
-/// Conductivity between two pressures, Kirchhoff blend of DESIGN section 3 step 4:
+/// Conductivity between two pressures, Kirchhoff blend:
 /// k = (k_up G + k_K |dp|) / (G + |dp|), k_K the mean of k over the pressures between.
 template <class M>
 Real face_conductivity(const State<M>& state, int material, Real upstream, Real p_a, Real p_b,
@@ -234,11 +235,12 @@ void outer_face(const CellView<M>& view, int axis, const Cell<State<M>::dim>& so
   face.head_gradient = (face.soil_below ? inward : -inward) / distance;
   const bool enters = inward > 0;
   face.saturation = enters ? 1 : soil.saturation;
+  face.outward = outward_factor(view, axis, soil, face.soil_below, distance);
   face.conductivity =
-      outward_factor(view, axis, soil, face.soil_below, distance) *
-      face_conductivity(state, soil.material,
-                        enters ? soil.saturated_conductivity : soil.conductivity, soil.pressure,
-                        pressure, soil.porosity, gravity_head(state, axis, distance));
+      face.outward * face_conductivity(state, soil.material,
+                                       enters ? soil.saturated_conductivity : soil.conductivity,
+                                       soil.pressure, pressure, soil.porosity,
+                                       gravity_head(state, axis, distance));
   face.held_pressure = pressure;
 }
 
@@ -270,9 +272,7 @@ void rained_face(const State<M>& state, const Cell<State<M>::dim>& soil, bool we
   const Real inward = face.soil_below ? face.head_gradient : -face.head_gradient;
   face.fed = true;
   face.wetted = wetted;
-  face.supply = wetted ? face.area * face.conductivity * max(0.0, inward) /
-                             state.soils[soil.material].material.unit_weight
-                       : 0;
+  face.supply = wetted ? face.area * driven_flux(state, face, soil, max(0.0, inward), 0).value : 0;
 }
 
 /// Face at a held pressure, at the given point of a wall or of the ground.

@@ -118,8 +118,9 @@ struct FaceFlux {
   Real conductivity = 0;   ///< Kirchhoff blend [m/s]
   Real held_pressure = 0;  ///< at an open surface or wall [Pa]
   Real distance = 0;       ///< over which H is taken [m]
-  Real area = 0;           ///< [m2]
-  Real flux = 0;           ///< volume per time, upwards along the axis, times A [m3/s]
+  Real outward = 1;  ///< factor of the conductivity of the cell on the way to its outer face [-]
+  Real area = 0;     ///< [m2]
+  Real flux = 0;     ///< volume per time, upwards along the axis, times A [m3/s]
   FaceKind kind = FaceKind::closed;
   std::int16_t held = -1;   ///< which HeldPressure; -1: none
   bool one_way = false;     ///< lets water out only

@@ -345,17 +345,19 @@ struct SwitchedFlux {
 template <class M>
 SwitchedFlux switched_flux(const State<M>& state, const Cell<State<M>::dim>& soil, int axis,
                            const FaceFlux& face) {
-  const Real inward = (face.soil_below ? face.head_gradient : -face.head_gradient) * face.distance;
+  const Real inward = face.soil_below ? face.head_gradient : -face.head_gradient;
   if (face.one_way && inward >= 0) return {};
   const bool full = inward > 0 || soil.pressure >= 0;
-  const Real k = face_conductivity(
-      state, soil.material, full ? soil.saturated_conductivity : soil.conductivity, soil.pressure,
-      face.held_pressure, soil.soil_porosity, gravity_head(state, axis, face.distance));
-  const Real mobility =
-      face.area * k / (state.soils[soil.material].material.unit_weight * face.distance);
-  const Real potential = mobility * inward;
-  if (face.fed && potential >= face.supply) return {face.supply, 0};
-  return {potential, -mobility};
+  FaceFlux trial = face;
+  trial.saturation = full ? 1 : soil.saturation;
+  trial.conductivity =
+      face.outward * face_conductivity(state, soil.material,
+                                       full ? soil.saturated_conductivity : soil.conductivity,
+                                       soil.pressure, face.held_pressure, soil.soil_porosity,
+                                       gravity_head(state, axis, face.distance));
+  const auto flux = driven_flux(state, trial, soil, inward, 0);
+  if (face.fed && face.area * flux.value >= face.supply) return {face.supply, 0};
+  return {face.area * flux.value, -face.area * flux.slope / face.distance};
 }
 
 /// All face fluxes at the trial pressures.
