@@ -86,6 +86,9 @@ class PairRun {
     for (auto& p : points_) strain(p);
     for (auto& p : points_) move(p);
     for (auto& w : water_) drive(w);
+    mean_velocities();
+    for_cells([&](PairCell<Dim>& c, const int(&i)[Dim]) { find_momentum_gain(c, i); });
+    for (auto& w : water_) exchange(w);
     for (auto& w : water_) carry(w);
   }
 
@@ -156,7 +159,6 @@ class PairRun {
       c.volume = c.water = c.pores = c.pressure = 0;
       c.skeleton_volume = c.mean_stress = 0;
       c.centroid.setZero();
-      c.momentum.setZero();
       c.found = false;
     }
     for (const auto& w : water_) {
@@ -167,14 +169,12 @@ class PairRun {
       c.pores += pores;
       c.pressure += pores * w.pressure;
       c.centroid += pores * w.position;
-      c.momentum += w.mass * w.velocity;
     }
     for (auto& c : cells_) {
       if (!(c.pores > 0)) continue;
       c.pressure /= c.pores;
       c.centroid /= c.pores;
       c.porosity = c.pores / c.volume;
-      c.velocity = c.momentum / c.water;
     }
   }
 
@@ -435,23 +435,39 @@ class PairRun {
     }
   }
 
-  void find_gain(PairCell<Dim>& c, const int (&i)[Dim]) {
-    Vector<Dim> momentum = Vector<Dim>::Zero();
-    c.gain = 0;
-    const auto add = [&](double flux, const PairCell<Dim>& from) {
+  // Calls f(water that enters, cell it comes from) for the faces of a cell.
+  template <class F>
+  void for_inflows(PairCell<Dim>& c, const int (&i)[Dim], F&& f) {
+    const auto see = [&](double flux, const PairCell<Dim>& from) {
       const double dm = dt_ * density_ * flux;
-      if (std::abs(dm) < 16 * 2.2e-16 * std::min(c.water, from.water)) return;
-      c.gain += dm;
-      if (dm > 0) momentum += dm * (from.velocity - c.velocity);
+      if (std::abs(dm) >= 16 * 2.2e-16 * std::min(c.water, from.water)) f(dm, from);
     };
     for (int axis = 0; axis < Dim; ++axis) {
-      if (i[axis] > 0) add(c.face_flux[axis], below(i, axis));
+      if (i[axis] > 0) see(c.face_flux[axis], below(i, axis));
       if (i[axis] + 1 == grid_.cells[axis]) continue;
       int j[Dim];
       for (int d = 0; d < Dim; ++d) j[d] = i[d] + (d == axis ? 1 : 0);
       const PairCell<Dim>& above = cells_[grid_.number(j)];
-      add(-above.face_flux[axis], above);
+      see(-above.face_flux[axis], above);
     }
+  }
+  void find_gain(PairCell<Dim>& c, const int (&i)[Dim]) {
+    c.gain = 0;
+    for_inflows(c, i, [&](double dm, const PairCell<Dim>&) { c.gain += dm; });
+  }
+
+  // Of the water of every cell, with the new velocities of its points.
+  void mean_velocities() {
+    for (auto& c : cells_) c.momentum.setZero();
+    for (const auto& w : water_) cell_at(w.position).momentum += w.mass * w.velocity;
+    for (auto& c : cells_)
+      if (c.pores > 0) c.velocity = c.momentum / c.water;
+  }
+  void find_momentum_gain(PairCell<Dim>& c, const int (&i)[Dim]) {
+    Vector<Dim> momentum = Vector<Dim>::Zero();
+    for_inflows(c, i, [&](double dm, const PairCell<Dim>& from) {
+      if (dm > 0) momentum += dm * (from.velocity - c.velocity);
+    });
     c.momentum_gain = momentum / (c.water + c.gain);
   }
 
@@ -490,7 +506,7 @@ class PairRun {
       half[d] = std::clamp(half[d] * stretch[d], 1e-3 * grid_.h, 0.5 * grid_.h);
   }
 
-  // New velocity of the water of a point, and its part in what its cell receives.
+  // New velocity of the water of a point.
   void drive(Water<Dim>& w) {
     const auto list = grid_.hat_nodes(w.position);
     Vector<Dim> velocity = Vector<Dim>::Zero(), change = Vector<Dim>::Zero();
@@ -499,18 +515,28 @@ class PairRun {
       change += list.value[a] * nodes_[list.node[a]].liquid_change;
     }
     w.velocity = keep_ * (w.velocity + change) + (1 - keep_) * velocity;
+  }
+
+  // Its part in what its cell gives, with its own velocity, or receives.
+  void exchange(Water<Dim>& w) {
     const auto& c = cell_at(w.position);
     const double pores = w.porosity * w.volume;
-    double dm = c.gain * w.mass / c.water;
+    double given = 0, taken = 0;
+    if (c.gain < 0) {
+      given = c.gain * w.mass / c.water;
+    } else if (c.pressure >= 0) {
+      taken = c.gain * pores / c.pores;
+    } else {
+      const double room = density_ * c.pores - c.water;
+      taken =
+          room > c.gain ? c.gain * (density_ * pores - w.mass) / room : c.gain * pores / c.pores;
+    }
     if (c.pressure >= 0) {
       const double lacks = c.water * pores / c.pores - w.mass;
-      dm = c.gain * pores / c.pores + (std::abs(lacks) > 1e-14 * w.mass ? 0.05 * lacks : 0);
-    } else if (c.gain >= 0) {
-      const double room = density_ * c.pores - c.water;
-      dm = room > c.gain ? c.gain * (density_ * pores - w.mass) / room : c.gain * pores / c.pores;
+      if (std::abs(lacks) > 1e-14 * w.mass) taken += 0.05 * lacks;
     }
-    const double after = w.mass + dm;
-    w.velocity = (w.mass * w.velocity + dm * c.velocity) / after + c.momentum_gain;
+    const double rest = w.mass + given, after = rest + taken;
+    w.velocity = (rest * w.velocity + taken * c.velocity) / after + c.momentum_gain;
     w.mass = after;
     w.pressure =
         c.pressure + hydrostatic(c.centroid, w.position) +
