@@ -36,7 +36,7 @@ struct PairCell {
   Vector<Dim> centroid, momentum, velocity, momentum_gain;
   double content = 0, storage = 0, saturation = 0, porosity = 0;
   double conductivity = 0, saturated_conductivity = 0, modulus = 0;
-  double skeleton_volume = 0, mean_stress = 0, rate = 0, gain = 0;
+  double skeleton_volume = 0, mean_stress = 0, rate = 0, gain = 0, change = 0;
   bool found = false;
   double face_gradient[Dim], face_saturation[Dim], face_conductivity[Dim], face_flux[Dim];
 };
@@ -85,6 +85,8 @@ class PairRun {
     wave2_ = speed2_ = 0;
     for (auto& p : points_) strain(p);
     for (auto& p : points_) move(p);
+    for (auto& c : cells_)
+      if (c.pores > 0) predict(c);
     for (auto& w : water_) drive(w);
     mean_velocities();
     for_cells([&](PairCell<Dim>& c, const int(&i)[Dim]) { find_momentum_gain(c, i); });
@@ -456,6 +458,16 @@ class PairRun {
     for_inflows(c, i, [&](double dm, const PairCell<Dim>&) { c.gain += dm; });
   }
 
+  // Change of the pressure as foretold: by gained water, squeezed pores, and retention that changes.
+  void predict(PairCell<Dim>& c) {
+    const double n = c.porosity;
+    double squeeze = c.saturation;
+    if (c.pressure < 0)
+      squeeze += n * (1 - n) *
+                 vadose::swrc::porosity_slope<double>(soil_.material.retention, -c.pressure, n);
+    c.change = (c.gain / density_ - c.rate * dt_ * squeeze * c.pores / n) / c.storage;
+  }
+
   // Of the water of every cell, with the new velocities of its points.
   void mean_velocities() {
     for (auto& c : cells_) c.momentum.setZero();
@@ -538,9 +550,7 @@ class PairRun {
     const double rest = w.mass + given, after = rest + taken;
     w.velocity = (rest * w.velocity + taken * c.velocity) / after + c.momentum_gain;
     w.mass = after;
-    w.pressure =
-        c.pressure + hydrostatic(c.centroid, w.position) +
-        (c.gain / density_ - c.rate * dt_ * c.saturation * c.pores / c.porosity) / c.storage;
+    w.pressure = c.pressure + hydrostatic(c.centroid, w.position) + c.change;
   }
 
   // The water of a point rides with the skeleton.

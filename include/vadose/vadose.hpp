@@ -55,6 +55,7 @@
 #include <vadose/kernel/rain.hpp>
 #include <vadose/kernel/state.hpp>
 #include <vadose/kernel/stencil.hpp>
+#include <vadose/kernel/step_limit.hpp>
 #include <vadose/kernel/tile.hpp>
 #include <vadose/kernel/time_step.hpp>
 #include <vadose/kernel/update_points.hpp>

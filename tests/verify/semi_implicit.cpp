@@ -6,6 +6,9 @@
 
 #include "../seepage.hpp"
 #include "../unit/restart_support.hpp"
+#include "cases/liakopoulos.hpp"
+#include "cases/terzaghi.hpp"
+#include "cases/unsaturated_consolidation.hpp"
 #include "verify_support.hpp"
 
 namespace {
@@ -254,6 +257,122 @@ TEST_CASE("semi-implicit: Terzaghi within 1 % of the load in a nineteenth of the
   }
 }
 
+namespace {
+
+vd::Material<Elastic> moist_sand() {
+  return {.solid_density = 2650,
+          .porosity = 0.4,
+          .lambda = 0.63,
+          .skeleton = {.young_modulus = 10e6, .poisson_ratio = 0.3},
+          .retention = {.residual_saturation = 0.05, .a = 3},
+          .conductivity = {.saturated_conductivity = 1e-6}};
+}
+
+/// Of the solid points, all as heavy [m].
+template <class Solver>
+Real mean_height(const Solver& solver) {
+  Real sum = 0, count = 0;
+  solver.solid().for_each([&](std::size_t b, int l) {
+    sum += solver.solid().at(vd::field::position, b)[l];
+    ++count;
+  });
+  return sum / count;
+}
+
+using Column = verify::Variant<vd::shape::Gimp, vd::transfer::Flip, SemiImplicit>;
+
+}  // namespace
+
+TEST_CASE("semi-implicit: tight clay in more than fifty times the step of waves in the skeleton") {
+  const verify::Terzaghi clay{.conductivity = 1e-6};
+  const auto run = verify::run<Column>(clay, {.cells = 10});
+  const Real waves = 0.5 * 0.1 *
+                     std::sqrt((1 - verify::table1::porosity) * verify::table1::solid_density /
+                               verify::Terzaghi::stiffness());
+  const Real step = clay.seconds(clay.times.back()) / static_cast<Real>(run.steps);
+  for (const auto& c : run.comparisons) {
+    MESSAGE("Tv ", c.time, ": rms ", 100 * c.norm().rms(), " % of the load, steps ", run.steps,
+            ", ", step / waves, " times that of waves");
+    CHECK(c.norm().rms() <= 0.01);
+  }
+  CHECK(step >= 50 * waves);
+}
+
+TEST_CASE("quasi-static: unsaturated consolidation at its true conductivity") {
+  for (const Real young_modulus : {3e6, 10e6}) {
+    const verify::UnsaturatedConsolidation clay{
+        .young_modulus = young_modulus, .speed_up = 1, .quasi_static = {.on = true}};
+    const auto exact = clay.closed_form();
+    auto solver = clay.column<Column>({.cells = 10}, clay.load, [t_full = clay.ramp()](Real t) {
+      return std::min(Real(1), t / t_full);
+    });
+    for (const Real tv : clay.times) {
+      solver.advance_to(clay.seconds(tv));
+      verify::Norm norm;
+      verify::for_cells(solver, vd::CellKind::soil, [&](const auto& cell) {
+        const Real depth = 1 - cell.centroid[0];
+        norm.add((end_pressure(cell) + exact.suction) / clay.load -
+                 exact.undrained() * verify::terzaghi_mean(depth - 0.05, depth + 0.05, tv));
+      });
+      MESSAGE("E ", young_modulus, " Pa, Tv ", tv, ": rms ", 100 * norm.rms(),
+              " % of the load, steps ", solver.steps(), ", ", solver.last_step().text());
+      CHECK(norm.rms() <= 0.01);
+      check_ledger(solver);
+    }
+    CHECK(solver.steps() < 10000);  // waves in the skeleton bound the step to 1 ms: 7e6 steps
+  }
+}
+
+TEST_CASE("quasi-static: drainage of Liakopoulos' column at its true conductivity") {
+  const verify::Liakopoulos sand{
+      .speed_up = 1, .bulk_modulus = 2.2e9, .quasi_static = {.on = true}};
+  const auto run = verify::run<Column>(sand, {.cells = 20});
+  for (const auto& c : run.comparisons) {
+    MESSAGE(c.quantity, " at ", c.time, " s: rms ", c.norm().rms(), ", steps ", run.steps);
+    CHECK(c.norm().rms() <= 0.02);
+  }
+}
+
+// A block at rest on a support that is taken away after 100 s: from then on it falls freely.
+TEST_CASE("quasi-static: a block that loses its support falls as it must") {
+  constexpr Real h = 0.1, support_ends = 100;
+  vd::Scene<Elastic> scene({.box = {Vec<1>(0.0), Vec<1>(3.0)}, .cell_size = h});
+  scene.gravity = Vec<1>(-gravity);
+  scene.add_soil(vd::box(Vec<1>(2.0), Vec<1>(2.5)), moist_sand(), {.saturation = 0.6});
+  const Real weight = gravity * 0.5 * (2650 * 0.6 + 1000 * 0.4 * 0.6);
+  scene.add(
+      vd::bc::Traction<1>{.region = vd::box(Vec<1>(2.0), Vec<1>(2 + 0.5 * h)),
+                          .traction = Vec<1>(weight),
+                          .time_factor = [=](Real t) { return t < support_ends ? 1.0 : 0.0; }});
+  vd::Solver<Elastic, SemiImplicit> solver(scene, {.quasi_static = {.on = true}});
+  solver.advance_to(support_ends);
+  const Real start = mean_height(solver);
+  MESSAGE("before: ", solver.last_step().text());
+  CHECK(solver.steps() < 40000);
+  for (const Real t : {0.1, 0.2, 0.3}) {
+    solver.advance_to(support_ends + t);
+    const Real fall = start - mean_height(solver);
+    MESSAGE("after ", t, " s: fallen ", fall, " of ", 0.5 * gravity * t * t, " m, ",
+            solver.last_step().text());
+    CHECK(verify::close(fall, 0.5 * gravity * t * t, 0.01));
+    CHECK(solver.last_step().solve.inertia == 1);
+  }
+}
+
+TEST_CASE("quasi-static steps are refused where no scheme or model knows them") {
+  vd::Scene<Elastic> scene({.box = {Vec<1>(0.0), Vec<1>(3.0)}, .cell_size = 0.1});
+  scene.add_soil(vd::box(Vec<1>(2.0), Vec<1>(2.5)), moist_sand(), {.saturation = 0.6});
+  CHECK_THROWS_WITH_AS(vd::Solver<Elastic>(scene, {.quasi_static = {.on = true}}),
+                       doctest::Contains("quasi_static.on"), vd::SetupError);
+  const auto refused = [&](vd::QuasiStatic choice, const char* name) {
+    CHECK_THROWS_WITH_AS((vd::Solver<Elastic, SemiImplicit>(scene, {.quasi_static = choice})),
+                         doctest::Contains(name), vd::SetupError);
+  };
+  refused({.on = true, .inertia = 0}, "inertia");
+  refused({.on = true, .inertia = 0.1, .dynamic = 0.1}, "dynamic");
+  refused({.on = true, .damping = 1}, "damping");
+}
+
 TEST_CASE("semi-implicit: 10 m of rigid clay under a pond, 400 s in at most 800 steps") {
   check_pond<Rigid>("rigid_pond0.5", 400, 0.2155, 800);
 }
@@ -362,6 +481,8 @@ TEST_CASE("semi-implicit: a run that is saved and taken up again has the same bi
   check(ponded<Rigid>(), 0.1);
   check(terzaghi(1e-4, 1e4, 1), 1e-3);
   check(resting(0.2), 1e-3);
+  const verify::UnsaturatedConsolidation clay{.speed_up = 1, .quasi_static = {.on = true}};
+  check(clay.column<Column>({.cells = 10}, clay.load, {}), 20);
 }
 
 TEST_CASE("dry soil takes the explicit step, to the last bit") {

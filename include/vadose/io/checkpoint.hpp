@@ -101,18 +101,30 @@ template <class A, class Sums>
 void put_sums(A& a, Sums& sums) {
   StepSums all;
   for (const auto& one : sums) {
-    auto& [max_speed2, max_wave2, max_drag, failed, escaped] =
+    auto& [max_speed2, max_wave2, max_dry_wave2, max_drag, failed, escaped] =
         one;  // the flags are those of one step
     all.max_speed2 = max(all.max_speed2, max_speed2);
     all.max_wave2 = max(all.max_wave2, max_wave2);
+    all.max_dry_wave2 = max(all.max_dry_wave2, max_dry_wave2);
     all.max_drag = max(all.max_drag, max_drag);
   }
   put_number(a, "largest speed", all.max_speed2);
   put_number(a, "largest wave speed", all.max_wave2);
+  put_number(a, "largest wave speed of dry soil", all.max_dry_wave2);
   put_number(a, "fastest drag", all.max_drag);
   if constexpr (A::reading) {
     for (auto& one : sums) one = StepSums{};
     sums.front() = all;
+  }
+}
+
+template <class A, class L>
+void put_limit(A& a, const char* field, L& limit) {
+  auto number = static_cast<std::uint8_t>(limit);
+  a.value(field, number);
+  if constexpr (A::reading) {
+    if (number > static_cast<std::uint8_t>(last_step_limit)) a.refuse(field, "does not exist");
+    limit = static_cast<StepLimit>(number);
   }
 }
 
@@ -122,13 +134,9 @@ void put_report(A& a, R& report) {
       report;  // no trouble in a run that is saved
   put_number(a, "time of the last step", time);
   put_number(a, "length of the last step", dt);
-  auto number = static_cast<std::uint8_t>(limit);
-  a.value("limit of the last step", number);
+  put_limit(a, "limit of the last step", limit);
   a.value("number of the last step", step);
   if constexpr (A::reading) {
-    if (number > static_cast<std::uint8_t>(StepLimit::retry))
-      a.refuse("limit of the last step", "does not exist");
-    limit = static_cast<StepLimit>(number);
     status = Status::ok;
     trouble = Trouble{};
   }
@@ -150,6 +158,8 @@ void put_run(A& a, S& state, R& memory) {
   put_number(a, "time", time);
   put_number(a, "step length", dt);
   put_number(a, "next step by its error", system.next_dt);
+  put_limit(a, "reason of the next step", system.next_limit);
+  put_number(a, "share of inertia", system.inertia_share);
   a.value("number of steps", step);
   put_number(a, "motion since the last sort", slack);
   put_flag(a, "frozen", frozen);

@@ -763,6 +763,72 @@ Real saturation_change(State<M>& state) {
   }
 }
 
+/// Inertia of the grains in this step, over their own: 1, but in quasi-static steps as much as lets waves in
+/// the skeleton stand the step, (dt / dt_wave)^2.
+template <class M>
+void raise_inertia(State<M>& state) noexcept {
+  auto& system = state.system;
+  const Real ratio = state.dt / system.wave_dt;
+  system.report.inertia =
+      state.options.quasi_static.on && !state.frozen ? max(1.0, ratio * ratio) : 1;
+}
+
+/// All weights and loads, as lengths [N].
+template <class M>
+Real weights_and_loads(const State<M>& state, Real mass) noexcept {
+  Real sum = mass * state.gravity.norm();
+  for (const auto& load : state.loads)
+    sum += load.force.norm() * std::fabs(state.factor_values[load.factor]);
+  return sum;
+}
+
+/// Measures the share of inertia in the weights and loads in a step that may be quasi-static.
+template <class M>
+void find_inertia_share(State<M>& state) {
+  constexpr int dim = State<M>::dim;
+  if (!state.options.quasi_static.on) return;
+  if constexpr (is_deformable<M>) {
+    const auto slots = static_cast<std::size_t>(state.grid.slots());
+    auto& sums = state.system.worst;
+    sums.assign(2 * slots, 0);
+    for_cells(state.grid, state.options.threads,
+              [&](std::int32_t e, const Index<dim>&, int slot, int) {
+                const auto i = static_cast<std::size_t>(e), s = static_cast<std::size_t>(slot);
+                const Real mass = state.nodes.solid_in[i][lane::mass];
+                Real change2 = 0;
+                for (int d = 0; d < dim; ++d)
+                  change2 += power<2>(state.nodes.solid_out[i][lane::increment + d]);
+                sums[2 * s] += mass * std::sqrt(change2);
+                sums[2 * s + 1] += mass + state.nodes.liquid_in[i][lane::mass];
+              });
+    Real change = 0, mass = 0;
+    for (std::size_t s = 0; s < slots; ++s) {
+      change += sums[2 * s];
+      mass += sums[2 * s + 1];
+    }
+    auto& report = state.system.report;
+    const Real forces = weights_and_loads(state, mass);
+    report.inertia_share = forces > 0 ? report.inertia * change / (state.dt * forces) : 1;
+  }
+}
+
+/// The share of inertia as the next steps are to see it: highest values count on for a while. (A step that
+/// followed each swing of a wave would add inertia where the grains are fastest, and so drive the wave.)
+template <class M>
+void remember_inertia(State<M>& state) noexcept {
+  constexpr Real keeps = 0.97;  // of the last value, per step
+  auto& share = state.system.inertia_share;
+  share = max(state.system.report.inertia_share, keeps * share);
+}
+
+/// What the length of a quasi-static step is to be multiplied by to bring a share of inertia to what the
+/// options ask for, as it grows with the square of the step; infinite in other steps.
+template <class M>
+Real inertia_factor(const State<M>& state, Real share) noexcept {
+  if (!state.options.quasi_static.on || !(share > 0)) return 1e300;
+  return 0.9 * std::sqrt(state.options.quasi_static.inertia / share);
+}
+
 /// Gives the cells their pressures of the start of the step back.
 template <class M>
 void restore_pressures(State<M>& state) {

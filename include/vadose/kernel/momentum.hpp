@@ -672,6 +672,15 @@ void record_response(State<M>& state, std::size_t i, const NodeSums<State<M>::di
   state.system.response[i] = r;
 }
 
+/// Local damping of this step: in quasi-static periods more, less and less as inertia begins to matter.
+template <bool Recorded, class M>
+Real damping_now(const State<M>& state) noexcept {
+  const auto& choice = state.options.quasi_static;
+  if (!Recorded || !choice.on) return state.options.damping;
+  const Real still = max(0.0, 1 - state.system.inertia_share / choice.dynamic);
+  return max(state.options.damping, still * choice.damping);
+}
+
 /// One node: forces, drag, boundaries, new velocities. `Recorded`: for an implicit solution.
 template <bool Recorded = false, class M, class Parts>
 void advance_node(State<M>& state, const CellView<M>& view, [[maybe_unused]] const Parts& parts) {
@@ -701,8 +710,9 @@ void advance_node(State<M>& state, const CellView<M>& view, [[maybe_unused]] con
     for (int d = 0; d < dim; ++d)
       state.nodes.open_impulse[static_cast<std::size_t>(view.slot * dim + d)] += state.dt * open[d];
   }
-  if (state.options.damping > 0 && node.solid_mass > 0)
-    damp(state.options.damping, !(sums.soil_share() > 0), node);
+  const Real damping = damping_now<Recorded>(state);
+  if (damping > 0 && node.solid_mass > 0) damp(damping, !(sums.soil_share() > 0), node);
+  if constexpr (Recorded) node.solid_mass *= state.system.report.inertia;
   if constexpr (has_liquid<M> && has_skeleton<M>) {
     Real prescribed[dim];
     find_prescribed(state, view.entry(), flags, prescribed);

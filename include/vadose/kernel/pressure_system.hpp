@@ -9,6 +9,7 @@
 #include <vector>
 
 #include <vadose/core/sparse_rows.hpp>
+#include <vadose/kernel/step_limit.hpp>
 
 namespace vadose {
 
@@ -62,9 +63,11 @@ struct SolveReport {
   int retries = 0;    ///< attempts with a larger step that were given up
   Real residual = 0;  ///< largest water volume left unbalanced in a cell over its pore volume [-]
   Real saturation_change = 0;  ///< largest change of saturation in a cell [-]
+  Real inertia = 1;        ///< factor of the inertia of the grains, 1 but in quasi-static steps [-]
+  Real inertia_share = 0;  ///< of inertia in the weights and loads, in quasi-static steps [-]
 };
 
-/// Everything an implicit solution keeps. Only next_dt outlives the step.
+/// Everything an implicit solution keeps. Only next_dt, next_limit and inertia_share outlive the step.
 template <int Dim>
 struct PressureSystem {
   static constexpr int corners = 1 << Dim;
@@ -74,6 +77,9 @@ struct PressureSystem {
   };
 
   Real next_dt = 0;  ///< step that the control of the error allows next [s]; 0: no say yet
+  StepLimit next_limit = StepLimit::accuracy;  ///< and why not more
+  Real inertia_share = 0;                      ///< of the last step: see SolveReport
+  Real wave_dt = 0;                            ///< step that waves in the skeleton allow [s]
   SolveReport report;
   std::vector<NodeResponse<Dim>> response;          ///< per node
   std::vector<PressureUnknown<Dim>> unknowns;       ///< in order of cells

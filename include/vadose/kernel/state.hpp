@@ -151,6 +151,24 @@ struct Resampling {
   }
 };
 
+/// Quasi-static periods of a semi-implicit run: its steps are not bound by waves in the skeleton, whose grains
+/// resist acceleration with as much more inertia as that takes, and damping brings it to rest. Where inertia
+/// comes to more than a small part of the weights and loads, steps shorten until, at the step of the waves,
+/// nothing is added, and damping fades: the motion is then dynamic.
+struct QuasiStatic {
+  bool on = false;
+  Real inertia = 1e-4;  ///< inertia over weights and loads that a step aims at [-], in (0, 0.1]
+  Real dynamic =
+      1e-2;  ///< the same from which on nothing is damped but by SolverOptions::damping [-], > inertia
+  Real damping = 0.5;  ///< local damping of the skeleton at rest [-], in [0, 1)
+
+  void validate() const {
+    if (!(inertia > 0 && inertia <= 0.1)) check::fail("inertia", inertia, "(0, 0.1]", "-");
+    if (!(dynamic > inertia)) check::fail("dynamic", dynamic, "(inertia, inf)", "-");
+    if (!(damping >= 0 && damping < 1)) check::fail("damping", damping, "[0, 1)", "-");
+  }
+};
+
 /// Choices of a step.
 struct StepOptions {
   Real courant = 0.5;           ///< C [-] of the stable step
@@ -165,13 +183,15 @@ struct StepOptions {
   /// Of free water.
   Resampling resampling = {};
   Real saturation_step = 0.002;  ///< change of S that a semi-implicit step aims at [-]
+  QuasiStatic quasi_static = {};
 };
 
 /// Sums of one thread, in its own cache lines.
 struct alignas(64) StepSums {
-  Real max_speed2 = 0;  ///< [m2/s2]
-  Real max_wave2 = 0;   ///< largest dry p-wave speed squared [m2/s2]
-  Real max_drag = 0;    ///< fastest decay of a relative velocity by explicit drag [1/s]
+  Real max_speed2 = 0;     ///< [m2/s2]
+  Real max_wave2 = 0;      ///< largest dry p-wave speed squared [m2/s2]
+  Real max_dry_wave2 = 0;  ///< the same of soil outside the cells with water, in columns with water
+  Real max_drag = 0;       ///< fastest decay of a relative velocity by explicit drag [1/s]
   /// A point is in an impossible state.
   bool failed = false;
   bool escaped = false;  ///< a point left the box

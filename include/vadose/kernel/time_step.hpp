@@ -8,28 +8,6 @@
 
 namespace vadose {
 
-/// What limits a time step.
-enum class StepLimit : std::uint8_t {
-  none,       ///< nothing yet
-  two_phase,  ///< compression wave of soil and pore water
-  skeleton,   ///< compression wave of dry soil
-  water,      ///< sound in free water
-  motion,     ///< points may not cross more than a part of a cell
-  drag,       ///< drag where a scheme takes it explicitly
-  user,       ///< the largest step or the end time asked for
-  accuracy,   ///< change of saturation in a step (semi-implicit)
-  gravity,    ///< waves on free water (semi-implicit)
-  retry,      ///< a larger step found no pressures (semi-implicit)
-};
-
-/// Name of a limit for reports.
-constexpr const char* name(StepLimit limit) noexcept {
-  constexpr const char* names[] = {"none",         "two-phase wave", "skeleton wave", "water",
-                                   "motion",       "drag",           "user",          "accuracy",
-                                   "gravity wave", "retry"};
-  return names[static_cast<int>(limit)];
-}
-
 namespace kernel {
 
 /// Highest frequency squared of soil with pore water, drag taken implicitly [1/s2]:
@@ -182,17 +160,25 @@ void begin_step(State<M>& state, Real dt) {
   find_factors(state);
 }
 
+/// Motion of the points, and what the user allows.
+template <class M>
+void take_motion_limits(const State<M>& state, StableStep& step) {
+  const Real speed = highest_speed(state);
+  if (speed > 0)
+    step.take(state.options.displacement_cap * state.grid.cell_size() / speed, StepLimit::motion);
+  step.take(state.options.dt_max, StepLimit::user);
+}
+
 /// Waves in the dry skeleton, the factor C, and motion: the end of every search for a step.
 template <class M>
-void take_common_limits(const State<M>& state, StableStep& step) {
+void take_common_limits(const State<M>& state, StableStep& step,
+                        Real StepSums::*wave = &StepSums::max_wave2) {
   const Real h = state.grid.cell_size();
   Real wave2 = 0;
-  for (const StepSums& s : state.sums) wave2 = max(wave2, s.max_wave2);
-  const Real speed = highest_speed(state);
+  for (const StepSums& s : state.sums) wave2 = max(wave2, s.*wave);
   if (wave2 > 0) step.take(h / std::sqrt(wave2), StepLimit::skeleton);
   step.dt *= state.options.courant;
-  if (speed > 0) step.take(state.options.displacement_cap * h / speed, StepLimit::motion);
-  step.take(state.options.dt_max, StepLimit::user);
+  take_motion_limits(state, step);
 }
 
 /// Largest stable step of the present state, before the factor C, and motion limits after it.
@@ -204,7 +190,30 @@ StableStep stable_step(State<M>& state) {
   return step;
 }
 
-/// Largest step of the skeleton alone, 2/omega = h / sqrt(E_c / ((1-n) rho_s)), over all cells.
+/// Part of the time in which a cell consolidates, gamma h^2 / (k E_c), that a step may take [-].
+inline constexpr Real drainage_share = 0.05;
+
+/// Step of a cell of a column that its pore water holds; 0 if it does not. In one dimension all motion
+/// changes volume: water that cannot flow away within the step resists it by S K* / n, implicitly, in
+/// series with its drainage. Where that is more than E_c, waves in the skeleton do not grow; with a margin
+/// 1 / (n / (S (K* + p)) + 4 k dt / (gamma h^2)) >= 2 E_c: S p, the stress it takes, grows by
+/// S + p dS/dp.
+template <class M>
+Real held_step(const State<M>& state, const Cell<State<M>::dim>& c) noexcept {
+  const auto& soil = state.soils[c.material];
+  const Real h = state.grid.cell_size(), stiffness = soil.p_wave_modulus;
+  if (!(c.saturation > 0)) return 0;
+  const Real held = c.saturation * (c.modulus + min(0.0, c.pressure)) / c.porosity;
+  if (!(held > 2 * stiffness)) return 0;
+  const Real room = 0.5 / stiffness - 1 / held;
+  if (!(c.conductivity > 0)) return 1e30;
+  const Real drainage = soil.material.unit_weight * h * h / c.conductivity;
+  const Real near = c.at_air ? 0.25 : 1;  // an open surface is nearer than the next cell
+  return near * min(0.25 * room * drainage, drainage_share * drainage / stiffness);
+}
+
+/// Largest step of the skeleton alone, 2/omega = h / sqrt(E_c / ((1-n) rho_s)), over all cells; in a
+/// column longer where the pore water holds it.
 template <class M>
 StableStep skeleton_step(const State<M>& state) {
   const Real h = state.grid.cell_size();
@@ -215,7 +224,9 @@ StableStep skeleton_step(const State<M>& state) {
       if (state.nodes.dof[i] != static_cast<std::int32_t>(i) || c.kind != CellKind::soil) continue;
       const auto& soil = state.soils[c.material];
       const Real wave2 = soil.p_wave_modulus / ((1 - c.porosity) * soil.material.solid_density);
-      step.take(step_share(c) * h / std::sqrt(wave2), StepLimit::skeleton);
+      const Real wave = step_share(c) * h / std::sqrt(wave2);
+      const Real held = State<M>::dim == 1 && has_liquid<M> ? held_step(state, c) : 0;
+      step.take(max(wave, held), held > wave ? StepLimit::drainage : StepLimit::skeleton);
     }
   }
   return step;
@@ -241,15 +252,23 @@ StableStep gravity_wave_step(const State<M>& state) {
 
 /// Largest step with implicit pressures: neither the compression of water nor the drag counts. Where
 /// nothing limits the first step, in soil that does not move, it is the explicit one; the control of the
-/// error lets those that follow grow.
+/// error lets those that follow grow. A quasi-static step is not bound by waves in the skeleton: see
+/// raise_inertia.
 template <class M>
 StableStep implicit_step(State<M>& state) {
   StableStep step = skeleton_step(state);
+  // In columns the water of a cell may hold its skeleton: see held_step.
+  constexpr bool column = State<M>::dim == 1;
+  take_common_limits(state, step, column ? &StepSums::max_dry_wave2 : &StepSums::max_wave2);
+  state.system.wave_dt = step.dt;
+  const bool goes_on = state.system.next_dt > 0 && !state.frozen;
+  if (goes_on && state.options.quasi_static.on) {
+    step = {};
+    take_motion_limits(state, step);
+  }
   const StableStep waves = gravity_wave_step(state);
-  step.take(waves.dt, waves.limit);
-  take_common_limits(state, step);
-  if (state.system.next_dt > 0 && !state.frozen)
-    step.take(state.system.next_dt, StepLimit::accuracy);
+  step.take(state.options.courant * waves.dt, waves.limit);
+  if (goes_on) step.take(state.system.next_dt, state.system.next_limit);
   if (step.limit == StepLimit::none)
     step.take(state.options.courant * wet_step(state).dt, StepLimit::accuracy);
   return step;

@@ -274,6 +274,12 @@ VADOSE_INLINE void update_solid_batch(State<M>& state, std::size_t b,
   sums.max_wave2 =
       max(sums.max_wave2, max_lane(Lanes(soil.p_wave_modulus) *
                                    select(mass > Lanes(0.0), volume, Lanes(0.0)) / alive_mass));
+  if constexpr (dim == 1 && RateByCell) {
+    const Lanes outside = Lanes(1.0) - in_soil_cells(state, cells, entries);
+    sums.max_dry_wave2 = max(sums.max_dry_wave2,
+                             max_lane(Lanes(soil.p_wave_modulus) * outside *
+                                      select(mass > Lanes(0.0), volume, Lanes(0.0)) / alive_mass));
+  }
   const LaneMask solid_only =
       (mass > Lanes(0.0)) & !(mass < Lanes(soil.material.solid_density) * volume);
   if (any(solid_only)) {
@@ -328,6 +334,22 @@ void share_gain(const State<M>& state, const Cell<State<M>::dim>& cell, Record& 
   }
 }
 
+/// Change of the pressure of a soil cell in the step as its start foretells it [Pa]: by gained water, by
+/// squeezed pores and by what their change of porosity does to the retention curve. It starts the search
+/// for the pressure, which then needs one pass over the points instead of two.
+template <class M>
+Real predicted_change(const State<M>& state, const Cell<State<M>::dim>& cell) noexcept {
+  const Real n = max(cell.porosity, 1e-6);
+  Real squeeze = cell.saturation;
+  if constexpr (is_unsaturated<M> && is_deformable<M>)
+    if (cell.pressure < 0)
+      squeeze += n * (1 - n) *
+                 swrc::porosity_slope<Real>(state.soils[cell.material].material.retention,
+                                            -cell.pressure, n);
+  const Real squeezed = cell.skeleton_rate * state.dt * squeeze * cell.pore_volume / n;
+  return (cell.gain / state.water.density - squeezed) / max(cell.storage, 1e-30);
+}
+
 /// What the pore water of a cell takes, and its pressure after the step as heads are kept.
 template <class M>
 Real find_share(const State<M>& state, const Cell<State<M>::dim>& cell, Record& share) noexcept {
@@ -339,10 +361,7 @@ Real find_share(const State<M>& state, const Cell<State<M>::dim>& cell, Record& 
     if (cell.solved) {
       p += cell.change;
     } else {
-      // The storage at the start of the step predicts the pressure; it only starts the search.
-      const Real squeezed = cell.skeleton_rate * state.dt * cell.saturation * cell.pore_volume /
-                            max(cell.porosity, 1e-6);
-      p += (cell.gain / state.water.density - squeezed) / max(cell.storage, 1e-30);
+      p += predicted_change(state, cell);
     }
   } else if (cell.pore_gain > 0) {
     share[lane::by_pores] = cell.pore_gain / cell.soil_pores;

@@ -30,9 +30,13 @@ struct StepReport {
       int n = std::snprintf(buffer, sizeof buffer, "step %lld, t = %.6g s, dt = %.3g s (%s)",
                             static_cast<long long>(step), time, dt, name(limit));
       if (solve.newton > 0)
+        n += std::snprintf(buffer + n, sizeof buffer - static_cast<std::size_t>(n),
+                           ", %d Newton and %d linear iterations, residual %.2g, %d retries",
+                           solve.newton, solve.linear, solve.residual, solve.retries);
+      if (solve.inertia > 1)
         std::snprintf(buffer + n, sizeof buffer - static_cast<std::size_t>(n),
-                      ", %d Newton and %d linear iterations, residual %.2g, %d retries",
-                      solve.newton, solve.linear, solve.residual, solve.retries);
+                      ", inertia times %.3g, %.2g of weights and loads", solve.inertia,
+                      solve.inertia_share);
     } else {
       std::snprintf(buffer, sizeof buffer,
                     "unstable: step %lld, t = %.6g s, dt = %.3g s (%s): %s violated by %s point "

@@ -42,6 +42,8 @@ struct SolverOptions {
   /// error in time of wetting and drying, where nothing else limits the step. A step with more than
   /// twice of it is repeated.
   Real saturation_step = 0.002;
+  /// Slow periods of a semi-implicit run in long steps; dynamics as soon as inertia matters.
+  QuasiStatic quasi_static = {};
 
   void validate() const {
     check::in_context("solver options", [&] {
@@ -56,6 +58,7 @@ struct SolverOptions {
       check::in_context("resampling", [&] { resampling.validate(); });
       if (!(saturation_step > 0 && saturation_step <= 1))
         check::fail("saturation_step", saturation_step, "(0, 1]", "-");
+      check::in_context("quasi_static", [&] { quasi_static.validate(); });
     });
   }
 };
@@ -363,6 +366,7 @@ class Solver {
       for (const auto& soil : state_.soils)
         s.max_wave2 = std::max(s.max_wave2, soil.p_wave_modulus / (soil.material.solid_density *
                                                                    (1 - soil.material.porosity)));
+      s.max_dry_wave2 = s.max_wave2;
       s.max_speed2 = max_speed2(state_.solid);
     }
     if constexpr (has_liquid<M>) s.max_speed2 = std::max(s.max_speed2, max_speed2(state_.liquid));
@@ -478,11 +482,21 @@ class Solver {
 template <class M, class Scheme>
 Solver<M, Scheme>::Solver(const Scene<M>& scene, const Options& options) {
   options.validate();
+  constexpr bool can_be_quasi_static = requires {
+    Scheme::knows_quasi_static;
+  }
+  &&has_liquid<M>&& is_deformable<M>;
+  if (options.quasi_static.on && !can_be_quasi_static)
+    throw SetupError(
+        "solver options: quasi_static.on = true outside {false} [-] but for scheme::SemiImplicit "
+        "and a "
+        "model with water in a skeleton that deforms");
   scene.validate();
   state_.transfer = options.transfer;
-  state_.options = {options.courant, options.damping,         options.displacement_cap,
-                    options.dt_max,  options.free_relaxation, options.threads,
-                    options.escaped, options.resampling,      options.saturation_step};
+  state_.options = {options.courant,     options.damping,         options.displacement_cap,
+                    options.dt_max,      options.free_relaxation, options.threads,
+                    options.escaped,     options.resampling,      options.saturation_step,
+                    options.quasi_static};
   detail::assemble(state_, scene);
   collect_walls(scene);
   state_.tiles.resize(static_cast<std::size_t>(4 * options.threads));

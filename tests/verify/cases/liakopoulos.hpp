@@ -43,7 +43,8 @@ struct Liakopoulos {
 
   /// Of k_sat = 4.41e-6 m/s and so of time. The skeleton's wave takes 0.1 s up and down.
   Real speed_up = 100;
-  Real bulk_modulus = 1e8;  ///< of the water [Pa]: n / K is 0.8 % of 1 / E_c
+  Real bulk_modulus = 1e8;                ///< of the water [Pa]: n / K is 0.8 % of 1 / E_c
+  vadose::QuasiStatic quasi_static = {};  ///< of a semi-implicit run
   std::vector<Real> times = {300, 600, 1200};
   std::vector<Resolution> resolutions = {{10}, {20}, {40}};
 
@@ -74,7 +75,8 @@ struct Liakopoulos {
                     .lateral_stress_ratio = nu / (1 - nu)});
     scene.add(vadose::bc::Fixed{.face = vadose::Face::bottom});
     scene.add(vadose::bc::PrescribedPressure<1>{.face = vadose::Face::bottom, .pressure = 0});
-    return vadose::Solver<Model, typename V::Scheme>(scene, {.courant = r.courant});
+    return vadose::Solver<Model, typename V::Scheme>(
+        scene, {.courant = r.courant, .quasi_static = quasi_static});
   }
 
   template <class Run>

@@ -48,6 +48,7 @@ struct UnsaturatedConsolidation {
   /// k_sat over Table 1's: k at S = 0.86 is 3e-7 m/s, 6000 s to T_v = 1. Inertia stays small: the
   /// load comes within 5 periods of the wave, 1/300 of the consolidation time or less.
   Real speed_up = 300;
+  vadose::QuasiStatic quasi_static = {};  ///< of a semi-implicit run
   std::vector<Real> times = {0.05, 0.1, 0.3, 0.6};
   std::vector<Resolution> resolutions = {{10}, {20}, {40}};
 
@@ -76,7 +77,8 @@ struct UnsaturatedConsolidation {
     scene.add(vadose::bc::Traction<1>{
         .region = surface, .traction = Vec<1>(-full_load), .time_factor = factor});
     scene.add(vadose::bc::PrescribedPressure<1>{.region = surface, .pressure = -suction});
-    vadose::Solver<Model, typename V::Scheme> solver(scene, {.courant = r.courant});
+    vadose::Solver<Model, typename V::Scheme> solver(
+        scene, {.courant = r.courant, .quasi_static = quasi_static});
     // The skeleton starts in balance with the suction: total stress 0.
     set_vertical_stress(solver, -saturation * suction, 1);
     return solver;

@@ -10,12 +10,18 @@
 namespace vadose::scheme {
 
 /// Step with implicit cell pressures: neither the compressibility of water nor the conductivity of
-/// the soil limits it, only waves in the skeleton, motion, and the change of saturation.
+/// the soil limits it, only waves in the skeleton (in quasi-static periods not even these), motion, and the
+/// change of saturation.
 struct SemiImplicit {
   static constexpr const char* name = "semi-implicit";
 
   /// A step is at most this much longer than the last.
   static constexpr Real growth = 1.5;
+  /// The same beyond the step of the waves: inertia that is added faster than damping takes the energy of waves
+  /// away feeds them.
+  static constexpr Real quasi_static_growth = 1.01;
+  /// Knows SolverOptions::quasi_static.
+  static constexpr bool knows_quasi_static = true;
   /// So many times a step may be halved.
   static constexpr int max_retries = 20;
 
@@ -27,16 +33,17 @@ struct SemiImplicit {
     } else {
       state.system.report = {};
       kernel::find_pressures(state);  // (g) of the last step: water in the cells, p, S
+      if constexpr (is_deformable<M> && State<M>::dim == 1) kernel::find_conductivities(state);
       kernel::StableStep stable = kernel::implicit_step(state);
       stable.take(dt_limit, StepLimit::user);
-      kernel::begin_step(state, stable.dt);
+      begin(state, stable.dt);
       kernel::map_liquid(state);  // (a) liquid to nodes
       if constexpr (is_deformable<M>) {
         kernel::map_solid(state);  // (a) solid to nodes
         kernel::map_loads(state);  //     traction
         kernel::unload_carried_nodes(state);
       }
-      while (!predict_and_solve(state, stable)) kernel::begin_step(state, stable.dt);
+      while (!predict_and_solve(state, stable)) begin(state, stable.dt);
       if (state.sums[0].failed) return stable;
       book(state);
       if constexpr (is_deformable<M>) {
@@ -50,6 +57,12 @@ struct SemiImplicit {
   }
 
  private:
+  template <class M>
+  static void begin(State<M>& state, Real dt) {
+    kernel::begin_step(state, dt);
+    kernel::raise_inertia(state);
+  }
+
   /// Velocities with the old pressures, then pressures at the end of the step and what follows from
   /// them. False: to be repeated with the smaller step that `stable` then holds. No point is touched.
   template <class M>
@@ -83,20 +96,37 @@ struct SemiImplicit {
     return false;
   }
 
-  /// Control of the error by the change of saturation: the step that may come next, and whether this
-  /// one stands.
+  /// Control of the error by the change of saturation, and by inertia in quasi-static steps: the step that
+  /// may come next, and whether this one stands.
   template <class M>
   static bool control_step(State<M>& state, kernel::StableStep& stable) {
     auto& system = state.system;
     const Real change = kernel::saturation_change(state);
     system.report.saturation_change = change;
     const Real target = state.options.saturation_step;
-    const Real factor = change > 0 ? min(growth, 0.9 * target / change) : growth;
-    if (change > 2 * target) {
-      stable = {max(0.1, factor) * stable.dt, StepLimit::accuracy};
+    Real factor = change > 0 ? min(growth, 0.9 * target / change) : growth;
+    StepLimit reason = StepLimit::accuracy;
+    kernel::find_inertia_share(state);
+    kernel::remember_inertia(state);
+    const bool jolts = system.report.inertia > 1 &&
+                       kernel::inertia_factor(state, system.report.inertia_share) < 0.3;
+    if (change > 2 * target || jolts) {
+      stable = {(jolts ? 0.3 : max(0.1, factor)) * stable.dt,
+                jolts ? StepLimit::inertia : StepLimit::accuracy};
       return false;
     }
-    system.next_dt = max(factor * stable.dt, stable.limit == StepLimit::user ? system.next_dt : 0);
+    const Real still = kernel::inertia_factor(state, system.inertia_share);
+    const Real most = state.options.quasi_static.on ? quasi_static_growth : growth;
+    if (min(still, most) < factor) {
+      factor = max(0.5, min(still, most));
+      reason = StepLimit::inertia;
+    }
+    // Waves bound no step of soil that does not move; those that do stay at the step of the waves at least.
+    const Real next =
+        max(factor * stable.dt, state.options.quasi_static.on ? min(stable.dt, system.wave_dt) : 0);
+    if (stable.limit == StepLimit::user && next < system.next_dt) return true;
+    system.next_dt = next;
+    system.next_limit = reason;
     return true;
   }
 
