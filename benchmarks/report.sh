@@ -33,6 +33,7 @@ run_two() {
 say "running (results in $results)"
 run_two saturated seepage
 run_two large_strain unsaturated
+run_two free_water manufactured
 if python=$(picture_python); then
   say "drawing"
   "$python" benchmarks/report.py "$results" || fail "pictures"

@@ -35,7 +35,7 @@ struct Printed : WithScheme<vadose::scheme::PaperLiteral<Mends>> {
   static std::string name() {
     std::string mended;
     const auto add = [&](bool is, const char* what) {
-      if (is) mended += (mended.empty() ? "+" : ",") + std::string(what);
+      if (is) mended += std::string("+") + what;
     };
     add(Mends.implicit_drag, "implicit_drag");
     add(Mends.cell_average, "cell_average");

@@ -8,7 +8,8 @@
 
 namespace verify {
 
-/// A run that keeps p [Pa] and sigma' [Pa] at three heights after every step.
+/// A run that keeps p [Pa] and sigma' [Pa] at three heights after every step. Cells hold the pressures
+/// at the start of a step: those belong to the row before.
 template <class Solver>
 struct Recorded {
   static constexpr std::array<Real, 3> heights = {0.25, 0.5, 0.75};
@@ -24,8 +25,10 @@ struct Recorded {
     while (solver.time() < t) {
       const auto report = solver.step(t);
       if (report.status != vadose::Status::ok) throw vadose::InstabilityError(report);
-      rows.push_back(row());
+      if (!rows.empty()) rows.back().pressure = pressures(solver);
+      rows.push_back({report.time, {}, stresses()});
     }
+    rows.back().pressure = pressures(verify::present(solver));
   }
   std::int64_t steps() const { return solver.steps(); }
   std::size_t points() const { return solver.solid().size() + solver.liquid().size(); }
@@ -51,22 +54,26 @@ struct Recorded {
   }
 
  private:
-  Row row() const {
-    std::vector<std::pair<Real, Real>> pressure, stress;
-    for_cells(solver, vadose::CellKind::soil,
-              [&](const auto& cell) { pressure.emplace_back(cell.centroid[0], cell.pressure); });
+  /// Values of (height, value) at the heights.
+  static std::array<Real, 3> at_heights(std::vector<std::pair<Real, Real>>& profile) {
+    std::sort(profile.begin(), profile.end());
+    std::array<Real, 3> values;
+    for (std::size_t i = 0; i < heights.size(); ++i) values[i] = linear(profile, heights[i]);
+    return values;
+  }
+  static std::array<Real, 3> pressures(const Solver& of) {
+    std::vector<std::pair<Real, Real>> profile;
+    for_cells(of, vadose::CellKind::soil,
+              [&](const auto& cell) { profile.emplace_back(cell.centroid[0], cell.pressure); });
+    return at_heights(profile);
+  }
+  std::array<Real, 3> stresses() const {
+    std::vector<std::pair<Real, Real>> profile;
     solver.solid().for_each([&](std::size_t b, int l) {
-      stress.emplace_back(solver.solid().at(vadose::field::position, b, 0)[l],
-                          solver.solid().at(vadose::field::bishop_stress, b, 0)[l]);
+      profile.emplace_back(solver.solid().at(vadose::field::position, b, 0)[l],
+                           solver.solid().at(vadose::field::bishop_stress, b, 0)[l]);
     });
-    std::sort(pressure.begin(), pressure.end());
-    std::sort(stress.begin(), stress.end());
-    Row row{solver.time(), {}, {}};
-    for (std::size_t i = 0; i < heights.size(); ++i) {
-      row.pressure[i] = linear(pressure, heights[i]);
-      row.stress[i] = linear(stress, heights[i]);
-    }
-    return row;
+    return at_heights(profile);
   }
 };
 
