@@ -128,8 +128,9 @@ void check_any_restart(int times, int apart, Setting setting = Setting::whole) {
           " liquid points");
 }
 
-/// Explicit drag tears the few grains at the edge of the soil away with the water beside it: pressures
-/// grow a thousandfold a step. The step in which a number ceases to be finite says so.
+/// What the printed scheme cannot do stops it. Explicit drag tears the few grains at the edge of the
+/// soil away with the water beside it, pressures reach 1e12 Pa in two steps; mended, a point of water is
+/// thrown from the foot of rigid soil at 80 m/s. Until then every number is finite.
 template <class M, class Scheme>
 void check_stops() {
   using S = vadose::Solver<M, Scheme>;
@@ -146,8 +147,10 @@ void check_stops() {
   int taken = 0;
   for (; taken < 20 && run.step().status == vadose::Status::ok; ++taken) {
     CHECK(finite(run.solid(), vadose::field::position, dim));
-    CHECK(finite(run.solid(), vadose::field::velocity, dim));
-    CHECK(finite(run.solid(), vadose::field::bishop_stress, M::Kinematics::stress_size));
+    if constexpr (vadose::is_deformable<M>) {
+      CHECK(finite(run.solid(), vadose::field::velocity, dim));
+      CHECK(finite(run.solid(), vadose::field::bishop_stress, M::Kinematics::stress_size));
+    }
     CHECK(finite(run.liquid(), vadose::field::position, dim));
     CHECK(finite(run.liquid(), vadose::field::velocity, dim));
     CHECK(finite(run.liquid(), vadose::field::liquid_pressure, 1));
@@ -155,7 +158,8 @@ void check_stops() {
   MESSAGE(run.last_step().text());
   CHECK(taken < 20);
   CHECK(run.last_step().trouble.criterion != nullptr);
-  CHECK_THROWS_AS(run.advance_to(run.time() + 1e-3), vadose::InstabilityError);
+  S again(any_scene<M>(Setting::walls), any_options<M, Scheme>());
+  CHECK_THROWS_AS(again.advance_to(1), vadose::InstabilityError);
 }
 
 template <class Preset>
@@ -176,9 +180,12 @@ void check_schemes() {
   if constexpr (vadose::has_liquid<M>) {
     check_any_restart<M, vadose::scheme::SemiImplicit>(20, 7);
     check_any_restart<M, vadose::scheme::PaperLiteral<>>(20, 17, Setting::no_pond);
-    check_any_restart<M, vadose::scheme::PaperLiteral<all_mends>>(20, 17, Setting::walls);
-    if constexpr (M::Kinematics::dim > 1 && vadose::is_deformable<M>)
-      check_stops<M, vadose::scheme::PaperLiteral<>>();
+    using Mended = vadose::scheme::PaperLiteral<all_mends>;
+    check_any_restart<M, Mended>(20, 17,
+                                 vadose::is_deformable<M> ? Setting::walls : Setting::no_pond);
+    if constexpr (M::Kinematics::dim > 1 && vadose::has_skeleton<M>)
+      check_stops<M, std::conditional_t<vadose::is_deformable<M>, vadose::scheme::PaperLiteral<>,
+                                        Mended>>();
   }
 }
 
