@@ -10,7 +10,7 @@ import sys
 
 import numpy as np
 
-from slope import plt, read_points, read_series
+from slope import mean_of_cells, plt, read_points, read_series
 
 
 def surface(points, value, cell):
@@ -49,8 +49,9 @@ def main():
         axes[0, column].set_ylabel("y [m]")
         middle = 0.5 * (start[:, 1].min() + start[:, 1].max())
         cut = np.abs(points["Points"][:, 1] - middle) < spacing
+        suction = 1e-3 * mean_of_cells(points["suction"], points["Points"], 2 * spacing)
         section = axes[1, column].scatter(points["Points"][cut, 0], points["Points"][cut, 2],
-                                          c=1e-3 * points["suction"][cut], s=4, marker="s",
+                                          c=suction[cut], s=4, marker="s",
                                           linewidths=0, cmap="viridis_r", vmin=0, vmax=10)
         axes[1, column].set_xlabel("x [m]")
         axes[1, column].set_ylabel("z [m]")
@@ -58,7 +59,7 @@ def main():
             axis.set_aspect("equal")
     figure.colorbar(above, cax=figure.add_axes([0.915, 0.56, 0.014, 0.4])).set_label(
         "displacement of the ground [m]")
-    figure.colorbar(section, cax=figure.add_axes([0.915, 0.08, 0.014, 0.4])).set_label("suction [kPa]")
+    figure.colorbar(section, cax=figure.add_axes([0.915, 0.08, 0.014, 0.4])).set_label("suction, mean of cells [kPa]")
     path = os.path.join(target, "hillside_rain.png")
     figure.savefig(path)
     print("picture:", os.path.abspath(path))

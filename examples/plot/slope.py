@@ -55,7 +55,7 @@ def read_csv(path):
 
 def mean_of_cells(values, positions, cell_size):
     """Every point's value replaced by the mean over the points of its cell."""
-    cells = np.floor(positions[:, :2] / cell_size).astype(np.int64)
+    cells = np.floor(positions / cell_size).astype(np.int64)
     _, cell = np.unique(cells, axis=0, return_inverse=True)
     cell = cell.ravel()
     return (np.bincount(cell, values) / np.bincount(cell))[cell]

@@ -302,6 +302,37 @@ TEST_CASE("gauges: what the model has not, wrong dimensions and late gauges are 
   CHECK(file.count("top.bishop_stress_zz [Pa]") == 1);
 }
 
+TEST_CASE("samples: before the first step water is as the scene gives it, after equilibrium too") {
+  const Material<GaugedSoil> silt{
+      .solid_density = 2650,
+      .porosity = 0.4,
+      .skeleton = {.elastic = {.young_modulus = 5e7, .poisson_ratio = 0.3},
+                   .friction_angle = degrees(30)},
+      .retention = {.a = 1.2, .lambda = 0.6},
+      .conductivity = {.saturated_conductivity = 1e-3, .lambda = 0.6}};
+  Scene<GaugedSoil> scene{{.box = {{0.0, 0.0}, {4.0, 4.0}}, .cell_size = 1.0}};
+  scene.gravity = {0.0, -9.81};
+  scene.liquid = {.density = 1000, .bulk_modulus = 2e6};
+  const Real suction = 9e3;
+  scene.add_soil(box({0.0, 0.0}, {4.0, 3.0}), silt, {.suction = suction});
+  scene.add(bc::Fixed{.face = Face::bottom});
+  Solver<GaugedSoil> solver{scene};
+  const Vec<2> place{0.25, 1.25};  // a point of the lattice
+  const auto check = [&] {
+    const auto water = io::WaterSampler(solver.state()).at(place);
+    const auto nearest = io::nearest_of_all(solver.liquid(), place, 1.0);
+    REQUIRE(nearest);
+    const Real above = place[1] - io::position_of<2>(solver.liquid(), *nearest)[1];
+    CHECK(water.pressure == doctest::Approx(-suction - 9810 * above).epsilon(1e-9));
+    const auto& curve = solver.state().soils[0].material.retention;
+    const Real porosity = solver.liquid().at(field::porosity, nearest->batch)[nearest->lane];
+    CHECK(water.saturation == doctest::Approx(curve.saturation(suction, porosity)).epsilon(1e-9));
+  };
+  check();
+  solver.equilibrate();
+  check();
+}
+
 TEST_CASE("run summary: the numbers printed are those of the solver") {
   Solver<GaugedSoil> solver = gauged_solver();
   const std::string before =

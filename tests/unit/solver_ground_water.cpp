@@ -127,9 +127,10 @@ TEST_CASE("drains and seepage faces let water out and none in") {
   a.advance_to(2);
   CHECK(passed(a.water_balance()) == 0);
   auto wet = ground<Column>(0.5);
+  wet.liquid.bulk_modulus = 2e5;  // for longer steps; what drains and rests hardly depends on it
   wet.add(vd::bc::Drain{.face = Face::bottom, .pressure = 1000});
   vd::Solver<Column> b(wet);
-  b.advance_to(2000);
+  b.advance_to(1000);  // 1.1 % from rest
   const auto w = b.water_balance();
   CHECK(w.inflow == 0);
   CHECK(w.outflow > 0.05 * w.initial);

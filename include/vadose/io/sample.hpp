@@ -153,14 +153,15 @@ class WaterSampler {
   explicit WaterSampler(const State<M>& state) : state_(state) {}
 
   /// Water at x [m]: p = p_c + rho_l g . (x - x_c) and S of the pressure cell of the last step that
-  /// x lies in. Before the first step, and where the cell had no water then, that of the nearest
-  /// liquid point in the cells around.
+  /// x lies in. Before the first step (also after equilibrate(), which gives the points the water of
+  /// their pressure and leaves the cells as they were), and where the cell had no water then, that of
+  /// the nearest liquid point in the cells around.
   WaterSample at(const Vec<dim>& x) const {
     Index<dim> index;
     for (int d = 0; d < dim; ++d) index[d] = state_.grid.cell_of(x[d], d);
     const auto entry = static_cast<std::size_t>(state_.grid.entry(index));
     const auto& nodes = state_.nodes;
-    if (entry < nodes.dof.size() && nodes.dof[entry] >= 0) {
+    if (state_.step > 0 && entry < nodes.dof.size() && nodes.dof[entry] >= 0) {
       const auto& cell = nodes.cell[static_cast<std::size_t>(nodes.dof[entry])];
       WaterSample sample{cell.pressure, cell.saturation};
       for (int d = 0; d < dim; ++d)
