@@ -1,11 +1,12 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT
-# The large-deformation problems of the paper, and a hillside in 3D: installs what is missing, builds
+# The large-deformation problems of the paper, a hillside in 3D and a storm of a day: installs what is missing, builds
 # and runs them in out/, prints their ledgers and draws their pictures.
 #   sh examples/paper.sh column [argument of sand_column_collapse]...       4.3
 #   sh examples/paper.sh centrifuge [argument of centrifuge_slope]...       4.4
 #   sh examples/paper.sh clay [argument of clay_slope]...                   4.5
 #   sh examples/paper.sh hillside [argument of hillside_rain]...
+#   sh examples/paper.sh storm [argument of storm_slope]...
 # Without arguments of its own every one takes some minutes; column then runs its sweep.
 set -eu
 cd "$(dirname "$0")/.."
@@ -16,7 +17,8 @@ case "${1:-}" in
   centrifuge) program=centrifuge_slope ;;
   clay) program=clay_slope ;;
   hillside) program=hillside_rain ;;
-  *) fail "usage: sh examples/paper.sh column|centrifuge|clay|hillside [argument]..." ;;
+  storm) program=storm_slope ;;
+  *) fail "usage: sh examples/paper.sh column|centrifuge|clay|hillside|storm [argument]..." ;;
 esac
 name=$1
 shift
@@ -35,6 +37,7 @@ if python=$(picture_python); then
   case "$name" in
     column) [ ! -f "out/$name/column_sweep.csv" ] || "$python" examples/plot/column.py "out/$name" ;;
     hillside) "$python" examples/plot/hillside.py "out/$name" ;;
+    storm) "$python" examples/plot/storm.py "out/$name" ;;
     *) "$python" examples/plot/slide.py "$name" "out/$name" ;;
   esac
 else
