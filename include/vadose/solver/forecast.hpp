@@ -23,7 +23,7 @@ class Forecast {
  public:
   /// `has_floor`: no step is shorter than that of a scene that is wet throughout.
   Forecast(const S& run, Real t_end, Real trial_seconds, bool has_floor)
-      : copy_(run), has_floor_(has_floor) {
+      : copy_(run), has_floor_(has_floor), patience_(trial_seconds) {
     const std::vector<Spell> spells = find_spells(run.state(), t_end);
     const auto trials =
         std::count_if(spells.begin(), spells.end(), [](const Spell& s) { return s.wetter; });
@@ -61,9 +61,18 @@ class Forecast {
     rest_wall_ += steps * pace_;
   }
 
-  /// Runs the copy to a time or to the deadline.
+  /// Runs the copy to a time or to the deadline; on to three times as long where the step may yet become
+  /// much shorter, no trend of it shows, and the run is long.
   void try_out(Real end) {
     std::vector<TrialMark> marks{now()};
+    run_copy(end, marks);
+    for (int more = 0; more < 2 && !failed_ && copy_.time() < end && is_open(end, marks); ++more) {
+      deadline_ += patience_;
+      run_copy(end, marks);
+    }
+    if (marks.size() > 1) learn(marks);
+  }
+  void run_copy(Real end, std::vector<TrialMark>& marks) {
     while (copy_.time() < end && (marks.size() < 5 || marks.back().wall < deadline_)) {
       const StepReport step = copy_.step(end);
       failed_ = step.status != Status::ok;
@@ -71,7 +80,15 @@ class Forecast {
       if (!(dt_ > 0) && (copy_.time() < end || limit_ == StepLimit::none)) limit_ = step.limit;
       marks.push_back(now());
     }
-    if (marks.size() > 1) learn(marks);
+  }
+  bool is_open(Real end, const std::vector<TrialMark>& marks) const {
+    if (!has_floor_) return false;
+    const StepTrend trend = StepTrend::of(marks);
+    const Real wall = (marks.back().wall - marks.front().wall) *
+                      (end - origin_ - marks.front().time) /
+                      (marks.back().time - marks.front().time);
+    return trend.power == 0 && shortest_step(copy_.state()) < 0.8 * trend.level &&
+           wall > 20 * patience_;
   }
 
   void learn(const std::vector<TrialMark>& marks) {
@@ -108,6 +125,7 @@ class Forecast {
   Clock::time_point start_ = Clock::now();  // before the copy is made
   S copy_;
   bool has_floor_;
+  Real patience_ = 0;  // of all trials together, if nothing is left open [s]
   Real deadline_ = 0;  // of trials [s] of wall time
   Real origin_ = 0;    // when the water came that the trend is about [s]
   bool failed_ = false;

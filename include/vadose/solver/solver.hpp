@@ -216,7 +216,8 @@ class Solver {
   }
 
   /// Cost of a run to time t_end [s]. A copy runs for `trial_seconds` of wall time, or to the end if
-  /// that comes first; its pace is taken for the rest. The step goes on as in the trial: soil that wets
+  /// that comes first (in a long run up to three times as long where no trend of the step shows);
+  /// its pace is taken for the rest. The step goes on as in the trial: soil that wets
   /// shortens it, down to the step of a scene that is wet throughout. Rain that starts, grows or stops
   /// and conditions that are switched later are known from their functions: a copy tries what brings
   /// more water, with its clock put forward. A slide that begins after the trial is not in the estimate.
