@@ -173,7 +173,7 @@ Real rain_error(const vd::Solver<Rigid, SemiImplicit>& solver, const std::string
 constexpr Real edge = 0.1, column_level = 1.3;
 
 /// Saturated soil of 1 m under 0.3 m of water, 4 cells wide.
-vd::Solver<Strip, SemiImplicit> resting(Real jitter, int threads = 1) {
+vd::Solver<Strip, SemiImplicit> resting(Real jitter, const vd::SolverOptions<Strip>& options = {}) {
   vd::Scene<Strip> scene({.box = {Vec<2>(0, 0), Vec<2>(0.4, 1.5)}, .cell_size = edge});
   scene.gravity[1] = -gravity;
   scene.add_soil(vd::box(Vec<2>(0, 0), Vec<2>(0.4, 1)), verify::saturated_soil<Strip>(),
@@ -187,7 +187,7 @@ vd::Solver<Strip, SemiImplicit> resting(Real jitter, int threads = 1) {
   scene.add(vd::bc::Fixed{.face = vd::Face::bottom});
   scene.add(vd::bc::Roller{.face = vd::Face::left});
   scene.add(vd::bc::Roller{.face = vd::Face::right});
-  return vd::Solver<Strip, SemiImplicit>(scene, {.threads = threads});
+  return vd::Solver<Strip, SemiImplicit>(scene, options);
 }
 
 /// Largest |p - hydrostatic| at the end of any step until t [Pa].
@@ -498,7 +498,7 @@ TEST_CASE("semi-implicit: undrained strip load without checkerboard") {
 TEST_CASE("semi-implicit: same bits for any number of threads") {
   std::vector<Real> first;
   for (const int threads : {1, 2, 3}) {
-    auto solver = resting(0.2, threads);
+    auto solver = resting(0.2, {.threads = threads});
     for (int i = 0; i < 40; ++i) REQUIRE(solver.step().status == vd::Status::ok);
     std::vector<Real> values;
     solver.liquid().for_each([&](std::size_t b, int l) {
@@ -547,6 +547,16 @@ TEST_CASE("dry soil takes the explicit step, to the last bit") {
 }
 
 TEST_SUITE("long") {
+  TEST_CASE("quasi-static: still water over soil stays still for ten minutes") {
+    for (const Real jitter : {0.0, 0.2}) {
+      auto solver = resting(jitter, {.quasi_static = {.on = true}});
+      solver.equilibrate({.tolerance = 1e-9, .max_time = 1});
+      const Real error = run_at_rest(solver, 600);
+      MESSAGE("jitter ", jitter, ": largest |dp| ", error, " Pa, ", solver.last_step().text());
+      CHECK(error <= (jitter > 0 ? 25 : 1e-3));
+      check_ledger(solver);
+    }
+  }
   TEST_CASE("semi-implicit: 10 m of elastic clay under a pond") {
     check_pond<Elastic>("full_pond0.5", 500, 0.1402, 250000);
   }
