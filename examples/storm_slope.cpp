@@ -38,7 +38,7 @@ struct Choices : example::RunChoices {
   Real rate = 4e-6;       // of the rain [m/s]
   Real inertia = 1e-4;    // see QuasiStatic
 
-  Choices() : RunChoices{.end_time = 23 * hour, .damping = 0, .pic_rate = 0, .frames = 23} {}
+  Choices() : RunChoices{.end_time = 23 * hour, .damping = 0, .frames = 23} {}
 };
 
 Choices read(int count, char** words) {

@@ -87,30 +87,34 @@ std::int32_t flux_node(const State<M>& state, const CellView<M>& view, int axis,
 /// Flux per area through the ground or a wall: drag and inertia of the water at the face itself, which
 /// goes on with the velocity of its nodes before the step: q [rho / (n S dt) + gamma / k] =
 /// rho (v^l_old - v^s) / dt - H. The new velocities of the nodes answer to all the faces around them; on a
-/// staircase of cells the ground's side would drink what flows down behind it. Water from beyond starts at
-/// rest: through the ground it enters no faster than its head drives it. (With inertia, grains that fly
-/// off the ground would draw water after them, more of it the faster they are. At a wall they cannot, and
-/// that bound, explicit Darcy flow, rings from step to step where the drag is slower than a step.)
+/// staircase of cells the ground's side would drink what flows down behind it. Water that enters
+/// through the ground is driven by its head and by no more inertia than the water itself has, not by grains
+/// that fly off (they would draw water after them, more of it the faster they are). Without its inertia it
+/// rings from step to step where the drag is slower than a step.
 template <class M>
 Real surface_flux(const State<M>& state, const CellView<M>& view, int axis, const FaceFlux& face) {
   constexpr int dim = State<M>::dim;
   const auto& nodes = state.nodes;
-  Real velocity = 0;
+  Real water = 0, grains = 0;
   for_cube<dim>(0, 2, [&](const Index<dim>& corner) {
     if (corner[axis]) return;
     const auto i = static_cast<std::size_t>(flux_node(state, view, axis, face, corner));
     const Record& liquid = nodes.liquid_out[i];
-    velocity += liquid[lane::velocity + axis] - liquid[lane::increment + axis];
-    if constexpr (is_deformable<M>) velocity -= nodes.solid_out[i][lane::velocity + axis];
+    water += liquid[lane::velocity + axis] - liquid[lane::increment + axis];
+    if constexpr (is_deformable<M>) grains += nodes.solid_out[i][lane::velocity + axis];
   });
   constexpr Real corners = power<dim - 1>(2.0);
   const auto& soil = soil_cell(view, axis, face);
-  const Real drive = state.water.density / state.dt * velocity / corners - face.head_gradient;
-  const Real flux = driven_flux(state, face, soil, drive, 1).value;
-  if (view.cell[axis] == 0 || view.cell[axis] == state.grid.cells()[axis]) return flux;
-  const Real inward = face.soil_below ? face.head_gradient : -face.head_gradient;
-  const Real most = driven_flux(state, face, soil, max(0.0, inward), 0).value;
-  return face.soil_below ? max(flux, -most) : min(flux, most);
+  const auto passes = [&](Real velocity, Real inertia) {
+    const Real drive = state.water.density / state.dt * velocity / corners - face.head_gradient;
+    return driven_flux(state, face, soil, drive, inertia).value;
+  };
+  const Real into = face.soil_below ? -1 : 1, flux = passes(water - grains, 1);
+  const bool wall = view.cell[axis] == 0 || view.cell[axis] == state.grid.cells()[axis];
+  if (wall || into * flux <= 0) return flux;
+  const Real own = into * min(into * (water - grains), max(0.0, into * water));
+  const Real most = max(into * passes(0, 0), into * passes(own, 1));
+  return into * min(into * flux, max(0.0, most));
 }
 
 /// Part of the flux at a held pressure that passes [-]: all of it down its head gradient, else what drag
