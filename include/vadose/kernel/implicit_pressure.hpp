@@ -763,6 +763,7 @@ Real saturation_change(State<M>& state) {
   }
 }
 
+/// DEVIATION: [Zhan] steps through slow periods by dynamics too.
 /// Inertia of the grains in this step, over their own: 1, but in quasi-static steps as much as lets waves in
 /// the skeleton stand the step, (dt / dt_wave)^2.
 template <class M>
