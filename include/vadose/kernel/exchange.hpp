@@ -111,8 +111,8 @@ Real surface_flux(const State<M>& state, const CellView<M>& view, int axis, cons
   };
   const Real into = face.soil_below ? -1 : 1, flux = passes(water - grains, 1);
   const bool wall = view.cell[axis] == 0 || view.cell[axis] == state.grid.cells()[axis];
-  if (wall || into * flux <= 0) return flux;
   const Real own = into * min(into * (water - grains), max(0.0, into * water));
+  if (wall || into * flux <= 0 || own == water - grains) return flux;
   const Real most = max(into * passes(0, 0), into * passes(own, 1));
   return into * min(into * flux, max(0.0, most));
 }

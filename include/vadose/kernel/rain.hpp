@@ -179,9 +179,9 @@ void for_fed_faces(State<M>& state, F&& f) {
 }
 
 /// Shares what a column has to give, its rain and its film, among the faces it wets, by what the
-/// soil could take through each: the flux that its head gradient drives at the pressure of the film. Given less than that in all
-/// the soil drinks all of it and its surface stays under suction, closed to the nodes; given more it
-/// is held at that pressure.
+/// soil could take through each: the flux that its head gradient drives at the pressure of the film.
+/// Given less than that in all the soil drinks all of it and its surface stays under suction, closed to
+/// the nodes; given more it is held at that pressure.
 template <class M>
 void share_supplies(State<M>& state) {
   if (!state.films) return;

@@ -156,10 +156,10 @@ struct Resampling {
 /// comes to more than a small part of the weights and loads, steps shorten until, at the step of the waves,
 /// nothing is added, and damping fades: the motion is then dynamic.
 struct QuasiStatic {
-  bool on = false;
+  bool on = false;      ///< off: every step is dynamic
   Real inertia = 1e-4;  ///< inertia over weights and loads that a step aims at [-], in (0, 0.1]
-  Real dynamic =
-      1e-2;  ///< the same from which on nothing is damped but by SolverOptions::damping [-], > inertia
+  /// The same from which on only SolverOptions::damping damps [-], above `inertia`.
+  Real dynamic = 1e-2;
   Real damping = 0.5;  ///< local damping of the skeleton at rest [-], in [0, 1)
 
   void validate() const {

@@ -6,6 +6,15 @@
 
 namespace verify {
 
+/// Coarse soil that stays saturated; k [m/s].
+template <class Model>
+vadose::Material<Model> plug_soil(Real porosity, Real conductivity) {
+  return {.porosity = porosity,
+          .lambda = 0.8,
+          .retention = {.a = 100, .porosity_dependent = false},
+          .conductivity = {.saturated_conductivity = conductivity, .porosity_dependent = false}};
+}
+
 /// Water swings in a U-tube with a plug of coarse, rigid soil at its lowest point. The legs move
 /// against each other, so that the pressure midway stays that of rest: the case is one leg, in 1D, of
 /// free water of depth L_f over half of the plug, L_p, with the mean head held at its base. With y the
@@ -60,12 +69,7 @@ struct UTubeLeg {
                                1000 * gravity * rise / (length() + rise) * x[0] / porosity
                          : lighter * (top - x[0]);
     };
-    scene.add_soil(vadose::box({0.0}, {plug}),
-                   vadose::Material<Model>{.porosity = porosity,
-                                           .lambda = 0.8,
-                                           .retention = {.a = 100, .porosity_dependent = false},
-                                           .conductivity = {.saturated_conductivity = conductivity,
-                                                            .porosity_dependent = false}},
+    scene.add_soil(vadose::box({0.0}, {plug}), plug_soil<Model>(porosity, conductivity),
                    {.liquid_pressure = pressure});
     scene.add_water(vadose::box({plug}, {top}), {.liquid_pressure = pressure});
     scene.add(vadose::bc::PrescribedHead{.face = vadose::Face::bottom, .head = depth + plug});
@@ -111,12 +115,7 @@ struct FallingLeg {
         {.box = {Vec<1>(0.0), Vec<1>(1.6)}, .cell_size = start_depth / r.cells});
     scene.gravity[0] = -gravity;
     scene.liquid.bulk_modulus = bulk_modulus;
-    scene.add_soil(vadose::box({0.0}, {plug}),
-                   vadose::Material<Model>{.porosity = porosity,
-                                           .lambda = 0.8,
-                                           .retention = {.a = 100, .porosity_dependent = false},
-                                           .conductivity = {.saturated_conductivity = conductivity,
-                                                            .porosity_dependent = false}},
+    scene.add_soil(vadose::box({0.0}, {plug}), plug_soil<Model>(porosity, conductivity),
                    {.liquid_pressure = [](const Vec<1>& x) {
                      return 1000 * gravity * (head + rise * x[0] / plug - x[0]);
                    }});
