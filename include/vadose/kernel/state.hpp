@@ -183,6 +183,7 @@ struct StepOptions {
   /// Of free water.
   Resampling resampling = {};
   Real saturation_step = 0.002;  ///< change of S that a semi-implicit step aims at [-]
+  /// Of semi-implicit runs.
   QuasiStatic quasi_static = {};
 };
 
