@@ -308,6 +308,14 @@ void put_cells(A& a, G& nodes) {
     a.value("cell fill", cell.raw_fill);
     a.value("closing of the pores of a cell", cell.closing);
     for (auto& x : cell.centroid) a.value("cell centroid", x);
+    a.value("axis of the ground at a cell", cell.ground_axis);
+    if constexpr (A::reading)
+      if (cell.ground_axis < -1 || cell.ground_axis >= static_cast<int>(std::size(cell.centroid)))
+        a.refuse("axis of the ground at a cell", "does not exist");
+    a.value("ground at a cell", cell.ground);
+    auto fed = static_cast<std::uint8_t>(cell.is_fed);
+    a.value("whether soil feeds a cell", fed);
+    if constexpr (A::reading) cell.is_fed = fed != 0;
   }
 }
 

@@ -198,6 +198,8 @@ struct Inflow {
   Real flux = 0;
   const Cell<Dim>* from = nullptr;  ///< other side, nullptr: boundary
   const FaceFlux* face = nullptr;
+  int axis = 0;    ///< across the face
+  Real place = 0;  ///< of the face on that axis [m]
 };
 
 /// Calls f(inflow) for every face of a pressure cell and its slivers.
@@ -212,15 +214,18 @@ void for_inflows(const State<M>& state, const CellView<M>& view, F&& f) {
   const auto face = [&](std::int32_t e, int axis) -> const FaceFlux& {
     return nodes.face[static_cast<std::size_t>(e) * dim + static_cast<std::size_t>(axis)];
   };
-  const auto visit = [&](std::int32_t e, std::int32_t below, std::int32_t above, int axis) {
+  const auto visit = [&](std::int32_t e, std::int32_t below, std::int32_t above, int axis,
+                         int step) {
     const FaceFlux& low = face(e, axis);
     const FaceFlux& high = face(above, axis);
-    if (low.flux != 0) f(Inflow<dim>{low.flux, other(below), &low});
-    if (high.flux != 0) f(Inflow<dim>{-high.flux, other(above), &high});
+    const Real h = state.grid.cell_size();
+    const Real place = state.grid.origin()[axis] + (view.cell[axis] + step) * h;
+    if (low.flux != 0) f(Inflow<dim>{low.flux, other(below), &low, axis, place});
+    if (high.flux != 0) f(Inflow<dim>{-high.flux, other(above), &high, axis, place + h});
   };
   for_members(view, [&](std::int32_t e, const Index<dim>& step) {
     if (e == view.entry()) {
-      for (int d = 0; d < dim; ++d) visit(e, view.neighbour(d, -1), view.neighbour(d, 1), d);
+      for (int d = 0; d < dim; ++d) visit(e, view.neighbour(d, -1), view.neighbour(d, 1), d, 0);
       return;
     }
     for (int d = 0; d < dim; ++d) {  // a sliver may lie at the rim of the tile
@@ -229,7 +234,7 @@ void for_inflows(const State<M>& state, const CellView<M>& view, F&& f) {
         below[a] += step[a] - (a == d ? 1 : 0);
         above[a] += step[a] + (a == d ? 1 : 0);
       }
-      visit(e, state.grid.entry(below), state.grid.entry(above), d);
+      visit(e, state.grid.entry(below), state.grid.entry(above), d, step[d]);
     }
   });
 }
@@ -290,9 +295,17 @@ void find_gains(State<M>& state) {
               auto& cell = nodes.cell[static_cast<std::size_t>(e)];
               const CellView<M> view(state, local, slot);
               cell.gain = 0;
+              cell.ground_axis = -1;
+              Real most = 0;
               for_inflows(state, view, [&](const Inflow<dim>& f) {
                 const Real dm = passed_water(state, cell, f);
                 cell.gain += dm;
+                if (cell.kind == CellKind::free && f.face->kind == FaceKind::to_free &&
+                    std::fabs(f.flux) > most) {
+                  most = std::fabs(f.flux);
+                  cell.ground_axis = static_cast<std::int8_t>(f.axis);
+                  cell.ground = f.place;
+                }
                 if (!f.from && f.face->held >= 0 && !f.face->fed) {
                   const std::size_t at = (static_cast<std::size_t>(slot) * held +
                                           static_cast<std::size_t>(f.face->held)) *

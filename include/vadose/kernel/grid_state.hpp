@@ -41,6 +41,7 @@ inline constexpr int mean_stress = 7;      ///< sum V tr(sigma*)/3 [J]
 // The same record once the points have their new velocities:
 inline constexpr int pore_momentum = 0;  ///< first of three, of the pore water [kg m/s]
 inline constexpr int free_momentum = 3;  ///< first of three, of the free water [kg m/s]
+inline constexpr int near_mass = 6;      ///< free water weighted by its nearness to the soil [kg]
 // The same record then: what a pore-water point takes of the gains of its cell.
 inline constexpr int by_pores = 0;       ///< mass per pore volume of the point [kg/m3]
 inline constexpr int by_mass = 1;        ///< mass per mass of the point [-]
@@ -94,13 +95,17 @@ struct Cell {
   Real limit = 1;                  ///< donor limiter on outflow
   Real mean_velocity[Dim] = {};    ///< of the water it holds, new, mass weighted [m/s]
   Real momentum_gain[Dim] = {};    ///< velocity change by exchanged momentum [m/s]
+  Real near_water = 0;             ///< free water weighted by its nearness to `ground` [kg]
+  Real ground = 0;                 ///< place on its axis of the face to soil that passes most [m]
+  std::int8_t ground_axis = -1;    ///< across that face; -1: none, all water counts as near
   CellKind kind = CellKind::none;
   bool at_air = false;         ///< a face of the cell is open to air
   bool drop = false;           ///< stands alone: no force, no volume change
   bool has_reference = false;  ///< reference_pressure applies
-  bool solved = false;         ///< an implicit solution gave `change`
-  std::uint8_t material = 0;   ///< of the largest bulk volume
-  std::uint8_t members = 1;    ///< itself and the slivers that share its pressure
+  bool is_fed = false;  ///< more free water comes through `ground` and other faces than leaves
+  bool solved = false;  ///< an implicit solution gave `change`
+  std::uint8_t material = 0;  ///< of the largest bulk volume
+  std::uint8_t members = 1;   ///< itself and the slivers that share its pressure
 };
 
 /// What a face between two cells is.

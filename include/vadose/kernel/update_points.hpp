@@ -375,6 +375,26 @@ Real find_share(const State<M>& state, const Cell<State<M>::dim>& cell, Record& 
   return p;
 }
 
+/// How near a point of free water is to the face to soil of its cell: 1 at the face, next to nothing from
+/// half a cell on. (What soil takes leaves the points at its face, what it gives goes to them: spread over
+/// the cell it would lift the water that rises out of the ground.)
+template <int Dim>
+Real nearness(const Cell<Dim>& cell, const Lanes (&x)[Dim], int l, Real over_cell_size) noexcept {
+  constexpr Real far = 0.002;
+  if (cell.ground_axis < 0) return 1;
+  return max(far, 1 - 2 * std::fabs(x[cell.ground_axis][l] - cell.ground) * over_cell_size);
+}
+
+/// Weighs the free water of a cell by nearness. By all of it where it gives much: no point more than half.
+template <int Dim>
+void find_near_water(Cell<Dim>& cell, Real near_water) noexcept {
+  cell.near_water = near_water;
+  cell.is_fed = cell.gain > 0;
+  if (cell.ground_axis >= 0 && -cell.gain < 0.5 * near_water) return;
+  cell.ground_axis = -1;
+  cell.near_water = cell.water;
+}
+
 /// Mean velocities of the water of every cell: of what it holds, and what the water of its submerged
 /// pores that passes to free water brings.
 template <class M>
@@ -387,6 +407,7 @@ void find_mean_velocities(State<M>& state) {
               const Record sums = member_sums(CellView<M>(state, local, slot), state.nodes.content);
               const bool soil = cell.kind == CellKind::soil;
               const int own = soil ? lane::pore_momentum : lane::free_momentum;
+              if (!soil) find_near_water(cell, sums[lane::near_mass]);
               for (int d = 0; d < dim; ++d) {
                 cell.mean_velocity[d] = cell.water > 0 ? sums[own + d] / cell.water : 0;
                 cell.momentum_gain[d] =
@@ -525,8 +546,9 @@ VADOSE_INLINE void free_batch(State<M>& state, std::size_t b,
       else if (!state.frozen)
         pressure[l] =
             at_rest + keep * (pressure[l] - at_rest) - bulk_modulus * state.dt * cell.rate;
-      if (cell.gain != 0 && cell.water > 0) {
-        const Real dm = cell.gain * mass[l] / cell.water, taken = max(0.0, dm);
+      if (cell.gain != 0 && cell.near_water > 0) {
+        const Real near_mass = mass[l] * nearness(cell, x, l, 1 / state.grid.cell_size());
+        const Real dm = cell.gain * near_mass / cell.near_water, taken = max(0.0, dm);
         for (int d = 0; d < dim; ++d) {
           double& v = points.at(field::velocity, b, d)[l];
           v = (mass[l] * v + taken * cell.mean_velocity[d]) / (mass[l] + taken) +
@@ -707,10 +729,10 @@ VADOSE_INLINE void carry_pore_water(State<M>& state, std::size_t b,
   }
 }
 
-/// Momentum of eight liquid points, to the cells.
+/// Momentum of eight liquid points, and what free ones hold near the soil, to the cells.
 template <class M>
 VADOSE_INLINE void add_momentum(const State<M>& state, const LiquidPlace<M>& at,
-                                Tile<State<M>::dim>& tile) noexcept {
+                                const std::int32_t* entries, Tile<State<M>::dim>& tile) noexcept {
   const auto& points = state.liquid;
   const int first = at.is_free ? lane::free_momentum : lane::pore_momentum;
   const Lanes mass = points.load(field::mass, at.batch);
@@ -718,6 +740,13 @@ VADOSE_INLINE void add_momentum(const State<M>& state, const LiquidPlace<M>& at,
   for (auto& r : record) r = Lanes(0.0);
   for (int d = 0; d < State<M>::dim; ++d)
     record[first + d] = mass * points.load(field::velocity, at.batch, d);
+  if (at.is_free)
+    for (int l = 0; l < lane_count; ++l) {
+      const std::int32_t e = state.nodes.dof[static_cast<std::size_t>(entries[at.cells.index[l]])];
+      if (e < 0) continue;
+      const auto& cell = state.nodes.cell[static_cast<std::size_t>(e)];
+      record[lane::near_mass].set(l, mass[l] * nearness(cell, at.x, l, 1 / state.grid.cell_size()));
+    }
   add_to_cells(at.cells, record, tile);
 }
 
@@ -736,7 +765,7 @@ void update_liquid_velocities(State<M>& state) {
       const LiquidPlace<M> at(state, b, range.slot, frame);
       if (at.is_free && state.frozen) continue;
       accelerate_liquid(state, at, frame, liquid.record);
-      add_momentum(state, at, cell_sums);
+      add_momentum(state, at, state.grid.tile(range.slot), cell_sums);
     }
     cell_sums.add_to(state.grid, range.slot, state.nodes.content);
   });

@@ -104,9 +104,10 @@ bool exists(const State<M>& state, const FreePoint& p) {
   return state.liquid.at(field::id, p.batch)[p.lane] >= 0;
 }
 
-/// Light points of a cell join their nearest neighbour that stays light enough not to be split.
+/// Points of a cell lighter than this [full points] join their nearest neighbour that stays light enough not
+/// to be split.
 template <class M>
-void merge_light(State<M>& state, std::span<const FreePoint> cell) {
+void merge_light(State<M>& state, std::span<const FreePoint> cell, Real below) {
   const Resampling& o = state.options.resampling;
   const auto mass = [&](const FreePoint& p) {
     return state.liquid.at(field::mass, p.batch)[p.lane];
@@ -114,7 +115,7 @@ void merge_light(State<M>& state, std::span<const FreePoint> cell) {
   for (const FreePoint& light : cell) {
     const auto x = position_of(state, light);
     const Real full = full_point_mass(state, x);
-    if (!exists(state, light) || mass(light) >= o.merge_below * full) continue;
+    if (!exists(state, light) || mass(light) >= below * full) continue;
     const FreePoint* nearest = nullptr;
     Real best = 0;
     for (const FreePoint& other : cell) {
@@ -167,42 +168,55 @@ int split_axis(const State<M>& state, std::span<const FreePoint> cell, const Fre
   return best_axis;
 }
 
+/// Halves a point: the new half is put at x, with the velocity and all else of the old one.
+template <class M>
+void halve_point(State<M>& state, const FreePoint& p, const Vec<State<M>::dim>& x) {
+  using Fields = typename State<M>::Liquid::fields;
+  auto& points = state.liquid;
+  points.at(field::mass, p.batch)[p.lane] *= 0.5;
+  points.at(field::volume, p.batch)[p.lane] *= 0.5;
+  std::array<double, static_cast<std::size_t>(Fields::total)> half{};
+  points.read(p.batch, p.lane, half);
+  half[static_cast<std::size_t>(Fields::template offset<field::Id>())] =
+      static_cast<Real>(state.next_liquid_id++);
+  for (int d = 0; d < State<M>::dim; ++d)
+    half[static_cast<std::size_t>(Fields::template offset<field::Position>() + d)] = x[d];
+  points.append(half, state.free_group());
+}
+
 /// Heavy points of a cell are halved; both halves move on with the same velocity.
 template <class M>
 void split_heavy(State<M>& state, std::span<const FreePoint> cell) {
-  using Fields = typename State<M>::Liquid::fields;
-  auto& points = state.liquid;
   for (const FreePoint& heavy : cell) {
     if (!exists(state, heavy)) continue;
-    const auto x = position_of(state, heavy);
-    Real& mass = points.at(field::mass, heavy.batch)[heavy.lane];
+    auto x = position_of(state, heavy);
+    const Real mass = state.liquid.at(field::mass, heavy.batch)[heavy.lane];
     if (mass <= state.options.resampling.split_above * full_point_mass(state, x)) continue;
     const int axis = split_axis(state, cell, heavy);
     if (axis < 0) continue;
-    const Real offset = split_offset(state, x, axis);
-    mass *= 0.5;
-    points.at(field::volume, heavy.batch)[heavy.lane] *= 0.5;
-    std::array<double, static_cast<std::size_t>(Fields::total)> half{};
-    points.read(heavy.batch, heavy.lane, half);
-    half[static_cast<std::size_t>(Fields::template offset<field::Id>())] =
-        static_cast<Real>(state.next_liquid_id++);
-    half[static_cast<std::size_t>(Fields::template offset<field::Position>() + axis)] =
-        x[axis] + offset;
-    points.append(half, state.free_group());
-    points.at(field::position, heavy.batch, axis)[heavy.lane] = x[axis] - offset;
+    const Real offset = split_offset(state, x, axis), middle = x[axis];
+    x[axis] = middle + offset;
+    halve_point(state, heavy, x);
+    state.liquid.at(field::position, heavy.batch, axis)[heavy.lane] = middle - offset;
+  }
+}
+
+/// Calls f(points) for the points of every cell in a list.
+template <class F>
+void for_points_of_cells(std::span<const FreePoint> list, F&& f) {
+  for (std::size_t begin = 0, end = 0; begin < list.size(); begin = end) {
+    while (end < list.size() && list[end].cell == list[begin].cell) ++end;
+    f(list.subspan(begin, end - begin));
   }
 }
 
 /// Merges and splits where needed, by the cells of the last step; new points join at the next sort.
 template <class M>
-void resample_water(State<M>& state) {
-  const std::vector<FreePoint> list = list_free_points(state);
-  for (std::size_t begin = 0, end = 0; begin < list.size(); begin = end) {
-    while (end < list.size() && list[end].cell == list[begin].cell) ++end;
-    const std::span<const FreePoint> cell(list.data() + begin, end - begin);
-    merge_light(state, cell);
+void resample_water(State<M>& state, std::span<const FreePoint> list) {
+  for_points_of_cells(list, [&](std::span<const FreePoint> cell) {
+    merge_light(state, cell, state.options.resampling.merge_below);
     split_heavy(state, cell);
-  }
+  });
 }
 
 }  // namespace vadose::detail

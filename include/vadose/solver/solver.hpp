@@ -18,8 +18,8 @@
 #include <vadose/solver/forecast.hpp>
 #include <vadose/solver/gather_films.hpp>
 #include <vadose/solver/release_films.hpp>
+#include <vadose/solver/release_springs.hpp>
 #include <vadose/solver/report.hpp>
-#include <vadose/solver/resample_water.hpp>
 #include <vadose/solver/scheme.hpp>
 #include <vadose/solver/walls.hpp>
 
@@ -513,7 +513,7 @@ template <class M, class Scheme>
 StepReport Solver<M, Scheme>::step(Real t_end) {
   if (state_.slack > 0.25 * state_.grid.cell_size() || state_.solid.has_new() || has_new_liquid()) {
     if constexpr (has_liquid<M>)
-      if (state_.options.resampling.on && !state_.frozen) detail::resample_water(state_);
+      if (!state_.frozen) detail::renew_free_points(state_);
     sort();
   }
   switch_conditions();
