@@ -123,7 +123,8 @@ struct SemiImplicit {
     }
     // Waves bound no step of soil that does not move; those that do stay at the step of the waves at least.
     const Real next =
-        max(factor * stable.dt, state.options.quasi_static.on ? min(stable.dt, system.wave_dt) : 0);
+        max(factor * stable.dt,
+            state.options.quasi_static.on ? min(growth * stable.dt, system.wave_dt) : 0);
     if (stable.limit == StepLimit::user && next < system.next_dt) return true;
     system.next_dt = next;
     system.next_limit = reason;
