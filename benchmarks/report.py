@@ -49,7 +49,8 @@ def save(figure, name):
 
 def short(variant):
     """A variant by what differs from the standard one."""
-    changed = [w for w, s in zip(variant.split(), standard.split()) if w != s]
+    words = variant.split()
+    changed = [w for w, s in zip(words, standard.split()) if w != s] + words[3:]
     return " ".join(changed).replace("_", " ") or standard
 
 
@@ -105,12 +106,26 @@ def draw_work_precision():
     save(figure, "work_precision.png")
 
 
+def draw_schemes():
+    """Errors of the schemes over wall time; as labels, steps."""
+    cases = ["schemes: Terzaghi", "schemes: unsaturated consolidation", "schemes: infiltration"]
+    figure, axes = plt.subplots(1, 3, figsize=(11.5, 3.4), layout="constrained")
+    for ax, case in zip(axes, cases):
+        draw_lines(ax, case, 1, "wall time [s]")
+        for r in norms:
+            if r["case"] == case and (r["quantity"], r["time"]) == runs(case)[0]:
+                if not r["failed"]:
+                    ax.annotate(f"{r['steps']:.0f}", (max(r["seconds"], 1e-4), r["rms"]),
+                                xytext=(3, 3), textcoords="offset points", fontsize=6)
+    save(figure, "schemes.png")
+
+
 def draw_choices():
     """Errors of every choice at the same resolution; a choice whose run failed has no bar."""
     cases = [("Terzaghi k = 1e-4 m/s", 20), ("two waves k = 9.8e-4 m/s", 50),
              ("large strain k = k0 J^2", 20), ("unsaturated E = 10 MPa S(n) k(n)", 10),
-             ("sloshing", 20), ("manufactured S = 1", 16)]
-    figure, axes = plt.subplots(2, 3, figsize=(11.5, 5), layout="constrained")
+             ("sloshing", 20), ("manufactured S = 1", 16), ("Philip", 40), ("pond rigid", 20)]
+    figure, axes = plt.subplots(2, 4, figsize=(14, 5), layout="constrained")
     for ax, (case, cells) in zip(axes.flat, cases):
         first, lines = runs(case)
         bars = {short(r["variant"]) + " (failed)": 0 for r in norms
@@ -241,6 +256,7 @@ def table():
 
 
 draw_work_precision()
+draw_schemes()
 draw_choices()
 draw_consolidation()
 draw_infiltration()

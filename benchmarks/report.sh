@@ -34,6 +34,7 @@ say "running (results in $results)"
 run_two saturated seepage
 run_two large_strain unsaturated
 run_two free_water manufactured
+run_two schemes
 if python=$(picture_python); then
   say "drawing"
   "$python" benchmarks/report.py "$results" || fail "pictures"

@@ -74,6 +74,10 @@
 #include <vadose/policy/drag/implicit_drag.hpp>
 #include <vadose/policy/hydraulic.hpp>
 #include <vadose/policy/hydraulic_concept.hpp>
+#include <vadose/policy/interblock/arithmetic.hpp>
+#include <vadose/policy/interblock/kirchhoff_blend.hpp>
+#include <vadose/policy/interblock/upstream.hpp>
+#include <vadose/policy/interblock_concept.hpp>
 #include <vadose/policy/kirchhoff.hpp>
 #include <vadose/policy/law.hpp>
 #include <vadose/policy/law/drucker_prager.hpp>

@@ -4,6 +4,7 @@
 #include <vadose/model/check_model.hpp>
 
 struct Soil {
+  using Interblock = vadose::interblock::KirchhoffBlend;
   using Kinematics = vadose::PlaneStrain;
   using Shape = vadose::shape::Gimp;
   using Transfer = vadose::transfer::Flip;

@@ -4,6 +4,7 @@
 #include <vadose/model/check_model.hpp>
 
 struct Soil {
+  using Interblock = vadose::interblock::KirchhoffBlend;
 #ifndef VADOSE_SHOULD_FAIL
   using Kinematics = vadose::PlaneStrain;
 #endif

@@ -4,6 +4,7 @@
 #include <vadose/model/check_model.hpp>
 
 struct Soil {
+  using Interblock = vadose::interblock::KirchhoffBlend;
   using Kinematics = vadose::PlaneStrain;
 #ifndef VADOSE_SHOULD_FAIL
   using Shape = vadose::shape::Gimp;

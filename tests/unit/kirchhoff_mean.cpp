@@ -7,6 +7,9 @@
 #include <vadose/policy/conductivity/mualem.hpp>
 #include <vadose/policy/conductivity/power.hpp>
 #include <vadose/policy/hydraulic.hpp>
+#include <vadose/policy/interblock/arithmetic.hpp>
+#include <vadose/policy/interblock/kirchhoff_blend.hpp>
+#include <vadose/policy/interblock/upstream.hpp>
 #include <vadose/policy/kirchhoff.hpp>
 #include <vadose/policy/swrc/always_saturated.hpp>
 #include <vadose/policy/swrc/gardner.hpp>
@@ -200,6 +203,21 @@ TEST_CASE("kirchhoff: blend with the upstream conductivity") {
   const Lanes lanes = vadose::blend_conductivity<Lanes>(Lanes(3), Lanes(1), Lanes(15), Lanes(-5));
   CHECK(lanes[6] == Approx(2.5).epsilon(1e-15));
   CHECK(vadose::blend_conductivity<Lanes>(Lanes(3), Lanes(1), Lanes(0), Lanes(0))[1] == 3);
+}
+
+TEST_CASE("kirchhoff: means of conductivity between cells") {
+  const KirchhoffMean<swrc::Tarantino, conductivity::Mualem> table(clay.curve, clay.law, 0.4);
+  const vadose::FaceState<Real> face{-2e4, -5e3, 0.38, 3e-8, 5e3};
+  const Real a = table.mean(-2e4, -2e4, 0.38), b = table.mean(-5e3, -5e3, 0.38);
+  namespace interblock = vadose::interblock;
+  CHECK(interblock::Upstream::mean(table, face) == 3e-8);
+  CHECK(interblock::Arithmetic::mean(table, face) == Approx((a + b) / 2).epsilon(1e-14));
+  const Real between = table.mean(-2e4, -5e3, 0.38);
+  CHECK(interblock::KirchhoffBlend::mean(table, face) ==
+        Approx((3e-8 * 5e3 + between * 1.5e4) / 2e4).epsilon(1e-14));
+  const vadose::FaceState<Lanes> faces{face.pressure_a, face.pressure_b, face.porosity,
+                                       face.upstream, face.gravity_head};
+  CHECK(interblock::Arithmetic::mean(table, faces)[5] == Approx((a + b) / 2).epsilon(1e-9));
 }
 
 TEST_CASE("kirchhoff: invalid set-up is refused") {

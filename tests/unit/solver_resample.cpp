@@ -75,7 +75,7 @@ void check_kept(unsigned seed) {
   if constexpr (dim > 1 && M::Transfer::affine) spin = angular_momentum<dim>(points);
   const std::size_t before = points.size();
 
-  vd::detail::resample_water(state);
+  vd::detail::resample_water(state, vd::detail::list_free_points(state));
   const std::size_t merged = before - points.size();
   CHECK(merged > 3);
   CHECK(points.has_new());

@@ -107,6 +107,7 @@ class ModelFingerprint {
     text("Retention", type_name<typename M::Retention>());
     text("Conductivity", type_name<typename M::Conductivity>());
     text("Drag", type_name<typename M::Drag>());
+    text("Interblock", type_name<typename M::Interblock>());
     number("size of a number", sizeof(Real));
     number("points per batch", lane_count);
   }

@@ -78,16 +78,14 @@ void find_conductivities(State<M>& state) {
                });
 }
 
-/// Conductivity between two pressures, Kirchhoff blend:
-/// k = (k_up G + k_K |dp|) / (G + |dp|), k_K the mean of k over the pressures between.
+/// Conductivity between two pressures by the model's mean.
 template <class M>
 Real face_conductivity(const State<M>& state, int material, Real upstream, Real p_a, Real p_b,
                        Real porosity, Real gravity_head) {
   if constexpr (is_unsaturated<M>) {
     if (p_a >= 0 && p_b >= 0) return upstream;
-    const Real mean =
-        state.soils[static_cast<std::size_t>(material)].kirchhoff->mean(p_a, p_b, porosity);
-    return blend_conductivity<Real>(upstream, mean, gravity_head, p_b - p_a);
+    return M::Interblock::mean(*state.soils[static_cast<std::size_t>(material)].kirchhoff,
+                               FaceState<Real>{p_a, p_b, porosity, upstream, gravity_head});
   } else {
     return upstream;
   }
@@ -130,7 +128,7 @@ struct FaceBatch {
   alignas(64) double upstream[lane_count], gravity_head[lane_count], factor[lane_count];
 };
 
-/// Kirchhoff blends of up to eight faces.
+/// Mean conductivities of up to eight faces.
 template <class M>
 void find_means(const State<M>& state, FaceBatch<M>& batch) {
   if (batch.count == 0) return;
@@ -139,11 +137,11 @@ void find_means(const State<M>& state, FaceBatch<M>& batch) {
       for (double* values :
            {batch.pressure_a, batch.pressure_b, batch.porosity, batch.upstream, batch.gravity_head})
         values[l] = values[0];
-    const Lanes a = Lanes::load(batch.pressure_a), b = Lanes::load(batch.pressure_b);
-    const Lanes mean =
-        state.soils[batch.material].kirchhoff->mean(a, b, Lanes::load(batch.porosity));
-    const Lanes k = blend_conductivity<Lanes>(Lanes::load(batch.upstream), mean,
-                                              Lanes::load(batch.gravity_head), b - a);
+    const Lanes k = M::Interblock::mean(
+        *state.soils[batch.material].kirchhoff,
+        FaceState<Lanes>{Lanes::load(batch.pressure_a), Lanes::load(batch.pressure_b),
+                         Lanes::load(batch.porosity), Lanes::load(batch.upstream),
+                         Lanes::load(batch.gravity_head)});
     for (int l = 0; l < batch.count; ++l) batch.face[l]->conductivity = batch.factor[l] * k[l];
   }
   batch.count = 0;

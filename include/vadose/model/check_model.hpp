@@ -17,7 +17,7 @@ namespace vadose {
 
 namespace requirement {
 
-/// The eight aliases of a model.
+/// The nine aliases of a model.
 template <class M>
 concept NamesKinematics = requires {
   typename M::Kinematics;
@@ -50,6 +50,10 @@ template <class M>
 concept NamesDrag = requires {
   typename M::Drag;
 };
+template <class M>
+concept NamesInterblock = requires {
+  typename M::Interblock;
+};
 
 /// `support` nodes per axis and `weights(position, half_size, values, slopes)`.
 template <class S>
@@ -66,8 +70,9 @@ concept VelocityTransfer = HasValidate<T> && requires {
 
 /// All eight.
 template <class M>
-concept NamesAll = NamesKinematics<M> && NamesShape<M> && NamesTransfer<M> && NamesSkeleton<M> &&
-    NamesLiquid<M> && NamesRetention<M> && NamesConductivity<M> && NamesDrag<M>;
+concept NamesAll =
+    NamesKinematics<M> && NamesShape<M> && NamesTransfer<M> && NamesSkeleton<M> && NamesLiquid<M> &&
+    NamesRetention<M> && NamesConductivity<M> && NamesDrag<M> && NamesInterblock<M>;
 /// Kinematics, if named, is one.
 template <class M>
 concept NoWrongKinematics = !NamesKinematics<M> || KinematicsPolicy<typename M::Kinematics>;
@@ -96,6 +101,8 @@ struct CheckAliases {
                 "vadose: the model has no alias Conductivity, such as conductivity::KozenyCarman");
   static_assert(requirement::NamesDrag<M>,
                 "vadose: the model has no alias Drag, such as drag::Darcy");
+  static_assert(requirement::NamesInterblock<M>,
+                "vadose: the model has no alias Interblock, such as interblock::KirchhoffBlend");
   static_assert(requirement::NoWrongKinematics<M>,
                 "vadose: Kinematics must be Uniaxial, PlaneStrain, Axisymmetric, "
                 "ThreeDimensional or offer the same members");
@@ -155,6 +162,9 @@ struct CheckCombination {
   static_assert(has_skeleton<M> || is_always_saturated<typename M::Retention>,
                 "vadose: a model with NoSkeleton takes Retention swrc::AlwaysSaturated; a "
                 "retention curve needs a Skeleton");
+  static_assert(
+      InterblockMean<typename M::Interblock, KirchhoffMean<swrc::Tarantino, conductivity::Mualem>>,
+      "vadose: Interblock needs `static T mean(const Integral&, const FaceState<T>&)`");
   static_assert(!has_liquid<M> || LiquidLaw<typename M::Liquid, stress_size>,
                 "vadose: Liquid needs `inviscid`, `validate()` and, unless inviscid, "
                 "`viscous_stress(rate)`");

@@ -17,6 +17,7 @@
 #include <vadose/policy/conductivity/mualem.hpp>
 #include <vadose/policy/drag/darcy.hpp>
 #include <vadose/policy/hydraulic_concept.hpp>
+#include <vadose/policy/interblock/kirchhoff_blend.hpp>
 #include <vadose/policy/law/inviscid_water.hpp>
 #include <vadose/policy/law/linear_elastic.hpp>
 #include <vadose/policy/law/rigid.hpp>
@@ -36,14 +37,15 @@ struct NoLiquid {};
 /// Dry soil.
 template <class K>
 struct DryModel {
-  using Kinematics = K;                         ///< dimension and strains
-  using Shape = shape::Gimp;                    ///< shape functions of solid points
-  using Transfer = transfer::Flip;              ///< velocities from nodes to points
-  using Skeleton = law::LinearElastic;          ///< constitutive law of the soil skeleton
-  using Liquid = NoLiquid;                      ///< viscous law of free water
-  using Retention = swrc::AlwaysSaturated;      ///< soil-water retention curve
-  using Conductivity = conductivity::Constant;  ///< hydraulic conductivity
-  using Drag = drag::Darcy;                     ///< force between liquid and skeleton
+  using Kinematics = K;                           ///< dimension and strains
+  using Shape = shape::Gimp;                      ///< shape functions of solid points
+  using Transfer = transfer::Flip;                ///< velocities from nodes to points
+  using Skeleton = law::LinearElastic;            ///< constitutive law of the soil skeleton
+  using Liquid = NoLiquid;                        ///< viscous law of free water
+  using Retention = swrc::AlwaysSaturated;        ///< soil-water retention curve
+  using Conductivity = conductivity::Constant;    ///< hydraulic conductivity
+  using Drag = drag::Darcy;                       ///< force between liquid and skeleton
+  using Interblock = interblock::KirchhoffBlend;  ///< unsaturated conductivity between cells
   using SolidUserFields = FieldSet<>;   ///< the host's own fields of solid points, 0 at first
   using LiquidUserFields = FieldSet<>;  ///< the same of liquid points
 };
