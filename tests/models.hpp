@@ -7,6 +7,7 @@
 #include <vadose/solver/solver.hpp>
 
 #include "seepage.hpp"
+#include "slope.hpp"
 
 namespace vadose {
 
@@ -18,6 +19,7 @@ extern template class Solver<UnsaturatedModel<Uniaxial>>;
 extern template class Solver<UnsaturatedModel<PlaneStrain>>;
 extern template class Solver<vadose_test::Seepage<Uniaxial>>;
 extern template class Solver<vadose_test::Seepage<PlaneStrain>>;
+extern template class Solver<vadose_test::Slope>;
 extern template class Solver<FreeWaterModel<PlaneStrain>>;
 
 }  // namespace vadose

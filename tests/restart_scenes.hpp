@@ -4,6 +4,7 @@
 // One scene for any model: soil with a step in it, water on it and beside it, and every condition
 // that keeps something between steps.
 
+#include <algorithm>
 #include <type_traits>
 
 #include <vadose/model/model.hpp>
@@ -108,15 +109,25 @@ auto any_options() {
 }
 
 /// A run of the scene is saved and taken up `times` times, `apart` steps after one another, each time
-/// in a solver that has gone elsewhere and with another number of threads.
+/// in a solver that has gone elsewhere and with another number of threads. `quasi_static`: after steps
+/// that inertia limits.
 template <class M, class Scheme>
-void check_any_restart(int times, int apart, Setting setting = Setting::whole) {
+void check_any_restart(int times, int apart, Setting setting = Setting::whole,
+                       bool quasi_static = false) {
   using S = vadose::Solver<M, Scheme>;
   const auto scene = any_scene<M>(setting);
   auto options = any_options<M, Scheme>();
   // Rigid soil has no other limit in its first semi-implicit step.
   if (std::is_same_v<Scheme, vadose::scheme::SemiImplicit>) options.dt_max = 0.05;
+  options.quasi_static.on = quasi_static;
   S run(scene, options);
+  bool by_inertia = false;  // has limited a step
+  for (int i = 0; quasi_static && i < 100; ++i) {
+    REQUIRE(run.step().status == vadose::Status::ok);
+    by_inertia = by_inertia || run.last_step().limit == vadose::StepLimit::inertia;
+  }
+  // In a column the water holds the skeleton.
+  if (M::Kinematics::dim > 1) CHECK(by_inertia == quasi_static);
   options.threads = 2;
   S other(scene, options);
   REQUIRE(steps(other, 3));
@@ -179,6 +190,8 @@ void check_schemes() {
   check_any_restart<M, vadose::scheme::Explicit>(20, 17);
   if constexpr (vadose::has_liquid<M>) {
     check_any_restart<M, vadose::scheme::SemiImplicit>(20, 7);
+    if constexpr (vadose::is_deformable<M>)
+      check_any_restart<M, vadose::scheme::SemiImplicit>(20, 7, Setting::no_pond, true);
     check_any_restart<M, vadose::scheme::PaperLiteral<>>(20, 17, Setting::no_pond);
     using Mended = vadose::scheme::PaperLiteral<all_mends>;
     check_any_restart<M, Mended>(20, 17,

@@ -50,7 +50,7 @@ struct Bare {
   static kernel::StableStep step(State<M>& state, Real dt_limit) {
     kernel::StableStep stable;
     kernel::take_common_limits(state, stable);
-    stable.take(dt_limit, StepLimit::user);
+    stable.take(dt_limit, StepLimit::end);
     kernel::begin_step(state, stable.dt);
     kernel::map_solid<M, false>(state);
     kernel::map_loads(state);

@@ -7,6 +7,7 @@
 #include <thread>
 
 #include "../seepage.hpp"
+#include "../slope.hpp"
 #include "restart_support.hpp"
 
 namespace {
@@ -160,6 +161,40 @@ TEST_CASE("embedding: no step of a wet column is below the floor of the estimate
   CHECK(floor <= solver.last_step().dt * (1 + 1e-3));
   CHECK(floor == doctest::Approx(solver.last_step().dt).epsilon(0.01));
   CHECK(column(0.5).estimate(0.1, 0).shortest_dt <= floor * (1 + 1e-3));
+}
+
+TEST_CASE("embedding: no run takes more steps than the estimate has at most") {
+  // Rain fills a column from S = 0.5 on; a block slides out of the cells that it fills.
+  S wetting = column(0.5);
+  const vd::Estimate wet = wetting.estimate(20, 0);
+  CHECK(wet.most_steps > wet.steps);
+  CHECK(wet.most_seconds >= wet.seconds);
+  wetting.advance_to(20);
+  CHECK(wetting.steps() <= wet.most_steps);
+  CHECK(wetting.steps() >= wet.steps);
+
+  vd::Scene<vadose_test::Slope> scene({.box = {{0, 0}, {2, 1}}, .cell_size = 0.1});
+  scene.gravity = {5, -9.81};
+  scene.liquid.bulk_modulus = 1e6;
+  scene.add_soil(vd::box({0.2, 0.0}, {0.6, 0.3}),
+                 {.name = "sand",
+                  .solid_density = 2650,
+                  .porosity = 0.4,
+                  .lambda = 0.63,
+                  .skeleton = {.elastic = {.young_modulus = 2e6, .poisson_ratio = 0.3},
+                               .friction_angle = vd::degrees(30)},
+                  .retention = {.a = 3},
+                  .conductivity = {.saturated_conductivity = 1e-6}},
+                 {.saturation = 0.9, .velocity = {0.5, 0}});
+  vd::Solver<vadose_test::Slope> sliding(scene, {.escaped = vd::Escape::clamp});
+  REQUIRE(vd::detail::can_slide(sliding.state()));
+  const vd::Estimate slide = sliding.estimate(0.4, 0);
+  sliding.advance_to(0.4);
+  MESSAGE("a slide: ", slide.steps, " to ", slide.most_steps, " steps told, ", sliding.steps(),
+          " taken");
+  CHECK(sliding.steps() <= slide.most_steps);
+  CHECK(slide.steps <= 1.3 * static_cast<Real>(sliding.steps()));
+  CHECK(slide.steps >= 0.7 * static_cast<Real>(sliding.steps()));
 }
 
 TEST_CASE("embedding: the estimate of a short run counts its steps") {

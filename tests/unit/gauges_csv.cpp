@@ -20,10 +20,11 @@
 #include <vadose/io/balance_history.hpp>
 #include <vadose/io/gauges.hpp>
 #include <vadose/io/run_summary.hpp>
-#include <vadose/policy/law/drucker_prager.hpp>
 #include <vadose/solver/solver.hpp>
 
 #include "../error_message.hpp"
+#include "../seepage.hpp"
+#include "../slope.hpp"
 #include "../temporary_directory.hpp"
 
 namespace {
@@ -54,9 +55,7 @@ std::map<std::string, std::vector<Real>> read_csv(const std::string& path) {
   return columns;
 }
 
-struct GaugedSoil : UnsaturatedModel<PlaneStrain> {
-  using Skeleton = law::DruckerPrager;
-};
+using GaugedSoil = vadose_test::Slope;
 
 /// A block of soil over a water table, 0.4 m wide and 0.3 m high; its bottom is held at 0 Pa.
 Solver<GaugedSoil> gauged_solver() {
@@ -336,13 +335,13 @@ TEST_CASE("samples: before the first step water is as the scene gives it, after 
 TEST_CASE("run summary: the numbers printed are those of the solver") {
   Solver<GaugedSoil> solver = gauged_solver();
   const std::string before =
-      printed([&](std::FILE* out) { io::print_preflight(out, solver, 10.0); });
+      printed([&](std::FILE* out) { io::print_preflight(out, solver, 1000.0); });
   CHECK(solver.steps() == 0);
   CHECK(number_after(before, "points   ") == 48);
   CHECK(number_after(before, "solid, ") == 48);
   const Real dt = number_after(before, "step     ");
   CHECK(dt > 0);
-  CHECK(number_after(before, "steps    ") == doctest::Approx(10 / dt).epsilon(0.01));
+  CHECK(number_after(before, "steps    ") == doctest::Approx(1000 / dt).epsilon(0.01));
   CHECK(before.find("limited by two-phase wave") != std::string::npos);
 
   const io::RunClock clock(solver);
@@ -385,4 +384,49 @@ TEST_CASE("advance: the same run as advance_to, with lines about its progress") 
             quiet.solid().at(field::bishop_stress, b, d)[l]);
     }
   });
+}
+
+TEST_CASE("suction is read in a cell as that of water at rest with the water that the cell has") {
+  using Soil = vadose_test::Seepage<Uniaxial>;
+  const Real uniform = 9.2e3, weight = 9810;  // [Pa], [Pa/m]
+  Real error[2];
+  for (int k = 0; k < 2; ++k) {
+    const Real h = k == 0 ? 1 : 0.5;
+    Scene<Soil> scene{{.box = {{0.0}, {4 * h}}, .cell_size = h}};
+    scene.gravity[0] = -9.81;
+    scene.add_soil(box({0.0}, {4 * h}),
+                   {.porosity = 0.48,
+                    .lambda = 0.89,
+                    .retention = {.a = 1.2},
+                    .conductivity = {.saturated_conductivity = 1e-9}},
+                   {.suction = uniform});
+    Solver<Soil> solver{scene};
+    REQUIRE(solver.step().status == Status::ok);
+    const io::WaterSample water = io::WaterSampler<Soil>(solver.state()).at(Vec<1>(1.5 * h));
+
+    const auto& curve = solver.state().soils[0].material.retention;
+    // Uniform suction is not at rest: its saturation is the mean over the points of S at rest.
+    std::vector<Real> heights;
+    solver.liquid().for_each([&](std::size_t b, int l) {
+      const Real x = solver.liquid().at(field::position, b, 0)[l];
+      if (x > h && x < 2 * h) heights.push_back(x - 1.5 * h);
+    });
+    REQUIRE(heights.size() > 1);
+    const auto mean_saturation = [&](Real suction) {
+      Real sum = 0;
+      for (const Real z : heights) sum += curve.saturation(suction + weight * z, 0.48);
+      return sum / static_cast<Real>(heights.size());
+    };
+    const Real saturation = curve.saturation(uniform, 0.48);
+    Real low = uniform, high = 2 * uniform;
+    for (int i = 0; i < 60; ++i)
+      (mean_saturation((low + high) / 2) > saturation ? low : high) = (low + high) / 2;
+    CHECK(water.saturation == doctest::Approx(saturation).epsilon(1e-5));
+    CHECK(-water.pressure == doctest::Approx(low).epsilon(1e-5));
+    error[k] = -water.pressure - uniform;
+    MESSAGE("cells of ", h, " m: suction ", -water.pressure, " Pa, uniform ", uniform, " Pa");
+  }
+  // Second order in the cell size.
+  CHECK(error[0] > 0);
+  CHECK(error[1] < 0.35 * error[0]);
 }

@@ -88,8 +88,8 @@ TEST_CASE("a step reports time, size, number and what limited it") {
   CHECK(solver.last_step().dt == doctest::Approx(0.5 * 0.1 / wave).epsilon(1e-3));
   const vadose::StepReport last = solver.step(time + 1e-6);
   CHECK(last.dt == doctest::Approx(1e-6).epsilon(1e-6));
-  CHECK(last.limit == vadose::StepLimit::user);
-  CHECK(contains(last.text(), "user"));
+  CHECK(last.limit == vadose::StepLimit::end);
+  CHECK(contains(last.text(), "end time"));
   CHECK(solver.last_step().step == last.step);
 }
 

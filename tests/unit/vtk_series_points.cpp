@@ -16,10 +16,10 @@
 #include <vector>
 
 #include <vadose/io/vtk_series.hpp>
-#include <vadose/policy/law/drucker_prager.hpp>
 #include <vadose/solver/two_phase_solver.hpp>
 
 #include "../error_message.hpp"
+#include "../slope.hpp"
 #include "../temporary_directory.hpp"
 
 namespace {
@@ -66,14 +66,8 @@ std::map<std::string, SeriesColumn> read_columns(const std::string& path) {
   return columns;
 }
 
-struct Salt {
-  static constexpr const char* name = "salt";
-  static constexpr const char* unit = "g/kg";
-};
-struct WetSoil : UnsaturatedModel<PlaneStrain> {
-  using Skeleton = law::DruckerPrager;
-  using LiquidUserFields = FieldSet<Sized<Salt, 1>>;
-};
+using vadose_test::Salt;
+using WetSoil = vadose_test::Slope;
 
 /// Two soils of different suction, and a pool beside them; the widths leave unused lanes.
 Solver<WetSoil> wet_solver() {

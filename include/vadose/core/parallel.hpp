@@ -49,6 +49,22 @@ inline int available_threads() noexcept {
 #endif
 }
 
+// One copy of every task: in two, one for each of the loops below, the compiler may fuse multiplications and
+// additions differently, and the bits of a run would depend on the number of threads.
+#if defined(__GNUC__) && !defined(__clang__)
+#define VADOSE_ONE_COPY [[gnu::noinline, gnu::noclone]]
+#elif defined(__clang__)
+#define VADOSE_ONE_COPY [[gnu::noinline]]
+#else
+#define VADOSE_ONE_COPY
+#endif
+
+/// Runs one task of parallel_for().
+template <class F>
+VADOSE_ONE_COPY void run_task(F& f, std::size_t task, int thread) {
+  f(task, thread);
+}
+
 /// Calls f(task, thread) for task = 0 .. count - 1; tasks must not touch each other's data.
 template <class F>
 void parallel_for(std::size_t count, [[maybe_unused]] int threads, F&& f) {
@@ -59,13 +75,15 @@ void parallel_for(std::size_t count, [[maybe_unused]] int threads, F&& f) {
       const FlushSubnormals flush;
       const int thread = omp_get_thread_num();
 #pragma omp for schedule(dynamic, 1)
-      for (std::size_t task = 0; task < count; ++task) f(task, thread);
+      for (std::size_t task = 0; task < count; ++task) run_task(f, task, thread);
     }
     return;
   }
 #endif
   const FlushSubnormals flush;
-  for (std::size_t task = 0; task < count; ++task) f(task, 0);
+  for (std::size_t task = 0; task < count; ++task) run_task(f, task, 0);
 }
+
+#undef VADOSE_ONE_COPY
 
 }  // namespace vadose

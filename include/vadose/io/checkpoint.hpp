@@ -284,7 +284,7 @@ class ReadPoints {
 
 /// What hosts, output, resampling (the kind of every cell, slivers too) and the search for the next step
 /// read of the cells. Steps read nothing else of the grid that an earlier step left there.
-template <class A, class G>
+template <class M, class A, class G>
 void put_cells(A& a, G& nodes) {
   const std::size_t size = nodes.dof.size();
   for (std::size_t i = 0; i < size; ++i) {
@@ -306,7 +306,7 @@ void put_cells(A& a, G& nodes) {
     a.value("cell porosity", cell.porosity);
     a.value("cell water", cell.water);
     a.value("cell fill", cell.raw_fill);
-    a.value("closing of the pores of a cell", cell.closing);
+    if constexpr (is_unsaturated<M>) a.value("closing of the pores of a cell", cell.closing);
     for (auto& x : cell.centroid) a.value("cell centroid", x);
     a.value("axis of the ground at a cell", cell.ground_axis);
     if constexpr (A::reading)
@@ -343,7 +343,7 @@ void read_state(CheckpointReader& file, State<M>& state, RunMemory& memory,
   std::move(liquid).put_into(state.liquid, state.grid, soils + 1,
                              static_cast<Real>(state.next_liquid_id));
   SectionReader cells = file.next("cells");
-  put_cells(cells, state.nodes);
+  put_cells<M>(cells, state.nodes);
   cells.finish();
   file.finish();
 }
@@ -371,7 +371,7 @@ void save_checkpoint(const std::string& path, const Solver<M, Scheme>& solver) {
   file.add("run", std::move(run));
   file.add("solid points", detail::written_points(state.grid, state.solid));
   file.add("liquid points", detail::written_points(state.grid, state.liquid));
-  detail::put_cells(cells, state.nodes);
+  detail::put_cells<M>(cells, state.nodes);
   file.add("cells", std::move(cells));
   file.write(path);
 }

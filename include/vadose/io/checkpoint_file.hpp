@@ -46,7 +46,7 @@ inline std::uint64_t checksum(const void* data, std::size_t bytes) noexcept {
 inline constexpr std::array<char, 8> checkpoint_magic = {'v', 'a', 'd', 'o', 's', 'e', '\r', '\n'};
 inline constexpr std::uint32_t checkpoint_endian = 0x01020304;
 /// Grows with every change of what is in the sections.
-inline constexpr std::uint32_t checkpoint_version = 4;
+inline constexpr std::uint32_t checkpoint_version = 5;
 
 /// Beginning of the file.
 struct CheckpointHead {

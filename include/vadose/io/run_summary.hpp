@@ -37,7 +37,8 @@ class RunClock {
 };
 
 /// Prints points, cells, memory, step and its limit, number of steps and wall time of a run to
-/// t_end [s]. It runs a copy for a second of wall time; the solver stays as it is.
+/// t_end [s], and the most that these can come to. It runs a copy for a second of wall time; the solver
+/// stays as it is.
 template <class S>
 void print_preflight(std::FILE* out, const S& solver, Real t_end) {
   const auto e = solver.estimate(t_end);
@@ -53,6 +54,11 @@ void print_preflight(std::FILE* out, const S& solver, Real t_end) {
                "  wall     about %.3g s\n",
                solver.time(), t_end, e.solid_points, e.liquid_points, e.blocks, e.megabytes, e.dt,
                name(e.limit), shrinking.c_str(), static_cast<long long>(e.steps), e.seconds);
+  if (static_cast<Real>(e.most_steps) > 1.05 * static_cast<Real>(e.steps))
+    std::fprintf(out,
+                 "  at most  %lld steps, %.3g s, if all that water reaches is wet and all that can "
+                 "slide does\n",
+                 static_cast<long long>(e.most_steps), e.most_seconds);
 }
 
 /// Prints time, steps, points and both ledgers with their closure errors.

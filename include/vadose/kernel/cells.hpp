@@ -452,7 +452,7 @@ void gather_cells(State<M>& state) {
             [&](std::int32_t e, const Index<State<M>::dim>& local, int slot, int) {
               if (state.nodes.dof[static_cast<std::size_t>(e)] == e)
                 gather_cell(state, CellView<M>(state, local, slot));
-              else
+              else if constexpr (is_unsaturated<M>)
                 state.nodes.cell[static_cast<std::size_t>(e)].closing = unset;
             });
 }

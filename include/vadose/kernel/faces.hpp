@@ -454,12 +454,11 @@ void find_reference_pressures(State<M>& state) {
             });
 }
 
-/// Step 4: all faces.
+/// Step 4 where the conductivities of the cells are known: all faces.
 template <class M>
-void find_faces(State<M>& state) {
+void connect_cells(State<M>& state) {
   constexpr int dim = State<M>::dim;
   if (state.films) find_columns(state);
-  find_conductivities(state);
   parallel_for(static_cast<std::size_t>(state.grid.slots()), state.options.threads,
                [&](std::size_t s, int) {
                  FaceBatch<M> batch;
@@ -472,6 +471,13 @@ void find_faces(State<M>& state) {
                });
   share_supplies(state);
   find_reference_pressures(state);
+}
+
+/// Step 4: all faces.
+template <class M>
+void find_faces(State<M>& state) {
+  find_conductivities(state);
+  connect_cells(state);
 }
 
 }  // namespace vadose::kernel

@@ -90,14 +90,15 @@ struct Cell {
   Real skeleton_rate = 0;          ///< div v^s [1/s]
   Real mean_stress = 0;            ///< mean Bishop stress of the skeleton in the cell [Pa]
   Real gain = 0;                   ///< water received in the step [kg]
-  Real closing = unset;            ///< of air-filled pores in the last step, NaN: not known [m3/s]
-  Real change = 0;                 ///< of the pressure over the step, where solved for [Pa]
-  Real limit = 1;                  ///< donor limiter on outflow
-  Real mean_velocity[Dim] = {};    ///< of the water it holds, new, mass weighted [m/s]
-  Real momentum_gain[Dim] = {};    ///< velocity change by exchanged momentum [m/s]
-  Real near_water = 0;             ///< free water weighted by its nearness to `ground` [kg]
-  Real ground = 0;                 ///< place on its axis of the face to soil that passes most [m]
-  std::int8_t ground_axis = -1;    ///< across that face; -1: none, all water counts as near
+  /// Of air-filled pores in the last step, NaN: not known; in unsaturated models [m3/s].
+  Real closing = unset;
+  Real change = 0;               ///< of the pressure over the step, where solved for [Pa]
+  Real limit = 1;                ///< donor limiter on outflow
+  Real mean_velocity[Dim] = {};  ///< of the water it holds, new, mass weighted [m/s]
+  Real momentum_gain[Dim] = {};  ///< velocity change by exchanged momentum [m/s]
+  Real near_water = 0;           ///< free water weighted by its nearness to `ground` [kg]
+  Real ground = 0;               ///< place on its axis of the face to soil that passes most [m]
+  std::int8_t ground_axis = -1;  ///< across that face; -1: none, all water counts as near
   CellKind kind = CellKind::none;
   bool at_air = false;         ///< a face of the cell is open to air
   bool drop = false;           ///< stands alone: no force, no volume change

@@ -189,10 +189,12 @@ struct StepOptions {
 
 /// Sums of one thread, in its own cache lines.
 struct alignas(64) StepSums {
-  Real max_speed2 = 0;     ///< [m2/s2]
-  Real max_wave2 = 0;      ///< largest dry p-wave speed squared [m2/s2]
-  Real max_dry_wave2 = 0;  ///< the same of soil outside the cells with water, in columns with water
-  Real max_drag = 0;       ///< fastest decay of a relative velocity by explicit drag [1/s]
+  Real max_speed2 = 0;  ///< [m2/s2]
+  Real max_wave2 = 0;   ///< largest dry p-wave speed squared [m2/s2]
+  /// The same of soil outside the cells with water, in columns with water: only there water holds the
+  /// soil of its cells.
+  Real max_dry_wave2 = 0;
+  Real max_drag = 0;  ///< fastest decay of a relative velocity by explicit drag [1/s]
   /// A point is in an impossible state.
   bool failed = false;
   bool escaped = false;  ///< a point left the box

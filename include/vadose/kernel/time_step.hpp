@@ -4,33 +4,12 @@
 /// \file
 /// Step 10: the largest stable step from the state, and what limits it.
 
-#include <vadose/kernel/pressure.hpp>
+#include <vadose/kernel/closing_pores.hpp>
+#include <vadose/kernel/held_column.hpp>
 
 namespace vadose {
 
 namespace kernel {
-
-/// Highest frequency squared of soil with pore water, drag taken implicitly [1/s2]:
-/// omega^2 = (2/h^2) [tr + sqrt(tr^2 - 4 det)], K* = S/(S/K + S_p),
-/// tr = K*/rho_l + [E_c + S (1-n)^2 K*/n] / ((1-n) rho_s), det = K* E_c / ((1-n) rho_s rho_l).
-/// E_c [Pa], K* [Pa] effective_modulus, n, S [-], densities [kg/m3], h [m].
-inline Real two_phase_frequency2(Real p_wave_modulus, Real effective_modulus, Real porosity,
-                                 Real saturation, Real solid_density, Real liquid_density,
-                                 Real cell_size) noexcept {
-  const Real solid = (1 - porosity) * solid_density;
-  const Real tr = effective_modulus / liquid_density +
-                  (p_wave_modulus +
-                   saturation * (1 - porosity) * (1 - porosity) * effective_modulus / porosity) /
-                      solid;
-  const Real det = effective_modulus * p_wave_modulus / (solid * liquid_density);
-  return 2 / (cell_size * cell_size) * (tr + std::sqrt(max(0.0, tr * tr - 4 * det)));
-}
-
-/// The same of a rigid skeleton: only the water moves.
-inline Real seepage_frequency2(Real effective_modulus, Real liquid_density,
-                               Real cell_size) noexcept {
-  return 4 * effective_modulus / (liquid_density * cell_size * cell_size);
-}
 
 /// A stable step and its reason.
 struct StableStep {
@@ -45,57 +24,6 @@ struct StableStep {
     }
   }
 };
-
-/// Part of 2/omega that a cell cut by the ground surface allows: its nodes carry less mass than the
-/// formula assumes. Measured: 200 steps from noise on a saturated block at K = 2.2 GPa in 80
-/// positions on the grid do not grow at half of this.
-inline constexpr Real cut_cell_step = 0.55;
-
-/// Part of 2/omega that a cell allows [-].
-template <int Dim>
-Real step_share(const Cell<Dim>& c) noexcept {
-  return c.at_air && (c.members > 1 || c.raw_fill < 0.95) ? cut_cell_step : 1;
-}
-
-/// Highest frequency squared of a soil cell of effective modulus K* [Pa] and saturation S [-], over the
-/// square of the part of 2/omega that it allows.
-template <class M>
-Real cell_frequency2(const State<M>& state, const Cell<State<M>::dim>& c, Real modulus,
-                     Real saturation) noexcept {
-  const Real h = state.grid.cell_size();
-  const Real rho = state.water.density;
-  const auto& soil = state.soils[c.material];
-  const Real w2 = is_rigid<M>
-                      ? seepage_frequency2(modulus, rho, h)
-                      : two_phase_frequency2(soil.p_wave_modulus, modulus, c.porosity, saturation,
-                                             soil.material.solid_density, rho, h);
-  const Real share = step_share(c);
-  return w2 / (share * share);
-}
-
-/// Part of the time until the air-filled pores of a cell have closed that one step may take [-].
-inline constexpr Real closing_share = 0.5;
-
-/// Highest frequency squared that a cell will have in a step: where little air is left, K* leaps to that of
-/// water within it. `speed` bounds that of all points [m/s].
-template <class M>
-Real coming_frequency2(const State<M>& state, const Cell<State<M>::dim>& c, Real speed) noexcept {
-  const Real now = cell_frequency2(state, c, c.modulus, c.saturation);
-  if constexpr (is_unsaturated<M>) {
-    const Real air = max(0.0, c.pore_volume - c.content);
-    const Real bulk = c.pore_volume / c.porosity;
-    const Real known = is_finite(c.closing)
-                           ? c.closing
-                           : 2 * State<M>::dim * speed / state.grid.cell_size() * bulk;
-    // A step of closing_share air / closing has this 2/omega.
-    const Real coming = 2 * max(0.0, known) / closing_share;
-    if (coming * coming <= now * air * air) return now;
-    const Real full = cell_frequency2(state, c, state.water.bulk_modulus, 1);
-    return coming * coming < full * air * air ? coming * coming / (air * air) : max(now, full);
-  } else {
-    return now;
-  }
-}
 
 /// Highest speed of points in the last step [m/s].
 template <class M>
@@ -112,29 +40,39 @@ StableStep wet_step(State<M>& state) {
   auto& nodes = state.nodes;
   const auto slots = static_cast<std::size_t>(state.grid.slots());
   nodes.frequency2.assign(slots, 0);
-  nodes.sought.assign(slots, 0);  // whether there is free water
+  constexpr char free_water = 1,
+                 closes = 2;  // of a block: it has some; what its stiffest cell does
+  nodes.sought.assign(slots, 0);
   const Real speed = highest_speed(state);
   parallel_for(slots, state.options.threads, [&](std::size_t s, int) {
     Real most = 0;
+    bool has_free = false, is_closing = false;
     for (std::size_t i = s * cells; i < (s + 1) * cells; ++i) {
       if (nodes.dof[i] != static_cast<std::int32_t>(i)) continue;
       const auto& c = nodes.cell[i];
       if (c.kind == CellKind::free) {
-        nodes.sought[s] = 1;
+        has_free = true;
       } else if constexpr (has_skeleton<M>) {
-        if (c.saturation > 0) most = max(most, coming_frequency2(state, c, speed));
+        const Real coming = c.saturation > 0 ? coming_frequency2(state, c, speed) : 0;
+        if (!(coming > most)) continue;
+        most = coming;
+        is_closing = coming > cell_frequency2(state, c, c.modulus, c.saturation);
       }
     }
     nodes.frequency2[s] = most;
+    nodes.sought[s] = static_cast<char>((has_free ? free_water : 0) | (is_closing ? closes : 0));
   });
   Real most = 0;
-  bool has_free = false;
+  bool has_free = false, is_closing = false;
   for (std::size_t s = 0; s < slots; ++s) {
-    most = max(most, nodes.frequency2[s]);
-    has_free = has_free || nodes.sought[s];
+    has_free = has_free || (nodes.sought[s] & free_water);
+    if (!(nodes.frequency2[s] > most)) continue;
+    most = nodes.frequency2[s];
+    is_closing = nodes.sought[s] & closes;
   }
   StableStep step;
-  if (most > 0) step.take(2 / std::sqrt(most), StepLimit::two_phase);
+  if (most > 0)
+    step.take(2 / std::sqrt(most), is_closing ? StepLimit::closing : StepLimit::two_phase);
   if (has_free) {
     const Real h = state.grid.cell_size();
     step.take(2 / std::sqrt(4 * state.water.bulk_modulus / (state.water.density * h * h)),
@@ -190,28 +128,6 @@ StableStep stable_step(State<M>& state) {
   return step;
 }
 
-/// Part of the time in which a cell consolidates, gamma h^2 / (k E_c), that a step may take [-].
-inline constexpr Real drainage_share = 0.05;
-
-/// Step of a cell of a column that its pore water holds; 0 if it does not. In one dimension all motion
-/// changes volume: water that cannot flow away within the step resists it by S K* / n, implicitly, in
-/// series with its drainage. Where that is more than E_c, waves in the skeleton do not grow; with a margin
-/// 1 / (n / (S (K* + p)) + 4 k dt / (gamma h^2)) >= 2 E_c: S p, the stress it takes, grows by
-/// S + p dS/dp.
-template <class M>
-Real held_step(const State<M>& state, const Cell<State<M>::dim>& c) noexcept {
-  const auto& soil = state.soils[c.material];
-  const Real h = state.grid.cell_size(), stiffness = soil.p_wave_modulus;
-  if (!(c.saturation > 0)) return 0;
-  const Real held = c.saturation * (c.modulus + min(0.0, c.pressure)) / c.porosity;
-  if (!(held > 2 * stiffness)) return 0;
-  const Real room = 0.5 / stiffness - 1 / held;
-  if (!(c.conductivity > 0)) return 1e30;
-  const Real drainage = soil.material.unit_weight * h * h / c.conductivity;
-  const Real near = c.at_air ? 0.25 : 1;  // an open surface is nearer than the next cell
-  return near * min(0.25 * room * drainage, drainage_share * drainage / stiffness);
-}
-
 /// Largest step of the skeleton alone, 2/omega = h / sqrt(E_c / ((1-n) rho_s)), over all cells; in a
 /// column longer where the pore water holds it.
 template <class M>
@@ -257,7 +173,9 @@ StableStep gravity_wave_step(const State<M>& state) {
 template <class M>
 StableStep implicit_step(State<M>& state) {
   StableStep step = skeleton_step(state);
-  // In columns the water of a cell may hold its skeleton: see held_step.
+  // In columns the water of a cell may hold its skeleton (see held_step), so that points count only
+  // outside such cells. In more dimensions waves of shear, which water does not hold, bound the step of
+  // every point.
   constexpr bool column = State<M>::dim == 1;
   take_common_limits(state, step, column ? &StepSums::max_dry_wave2 : &StepSums::max_wave2);
   state.system.wave_dt = step.dt;

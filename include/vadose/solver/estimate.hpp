@@ -11,6 +11,7 @@
 #include <string>
 #include <vector>
 
+#include <vadose/kernel/pressure.hpp>
 #include <vadose/kernel/time_step.hpp>
 
 namespace vadose {
@@ -26,7 +27,11 @@ struct Estimate {
   Real shortest_dt = 0;               ///< step when everything is wet [s]; 0: no such bound
   std::int64_t steps = 0;             ///< to the end time
   Real seconds = 0;                   ///< wall time of these, without output
-  Real megabytes = 0;                 ///< of points and grid
+  /// Steps if after the trial each is as short as any can become: soil that water reaches is wet, ground that
+  /// can slide is cut by the cells as it is worst. 0: not known.
+  std::int64_t most_steps = 0;
+  Real most_seconds = 0;  ///< wall time of these
+  Real megabytes = 0;     ///< of points and grid
 
   /// A few lines for people.
   std::string text() const {
@@ -101,6 +106,40 @@ struct StepTrend {
            (bend < to ? (to - bend) / floor : 0);
   }
 };
+
+/// Whether the soil can yield, so that its surface may come to lie anywhere on the grid.
+template <class M>
+constexpr bool can_slide(const State<M>& /*state*/) {
+  if constexpr (is_deformable<M>)
+    return State<M>::dim > 1 && law::state_size<typename M::Skeleton> > 0;
+  else
+    return false;
+}
+
+/// Step of the explicit scheme in soil that has slid, as wet as it is now [s]: each cell may be cut by the
+/// ground, and grains have come apart.
+template <class M>
+Real slid_step(const State<M>& state) {
+  Real most = 0, wave2 = 0;
+  if constexpr (is_deformable<M>)
+    for (const auto& soil : state.soils)
+      wave2 = std::max(wave2, soil.p_wave_modulus /
+                                  ((1 - kernel::dispersed_porosity) * soil.material.solid_density));
+  if constexpr (has_liquid<M> && has_skeleton<M>)
+    for (std::size_t i = 0; i + Block<State<M>::dim>::cells < state.nodes.cell.size(); ++i) {
+      const auto& c = state.nodes.cell[i];
+      if (state.nodes.dof[i] != static_cast<std::int32_t>(i) || c.kind != CellKind::soil ||
+          !(c.saturation > 0))
+        continue;
+      const Real share = kernel::step_share(c);
+      most = std::max(most,
+                      share * share * kernel::cell_frequency2(state, c, c.modulus, c.saturation));
+    }
+  Real dt = 1e30;
+  if (wave2 > 0) dt = state.grid.cell_size() / std::sqrt(wave2);
+  if (most > 0) dt = std::min(dt, kernel::cut_cell_step * 2 / std::sqrt(most));
+  return state.options.courant * dt;
+}
 
 /// Step of the explicit scheme when all soil is saturated and water stands on it [s]; 0 in models
 /// without water, which do not become wetter. `cut`: as short as the cells cut by the ground make it

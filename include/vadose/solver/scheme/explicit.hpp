@@ -49,7 +49,7 @@ kernel::StableStep Explicit::watched(State<M>& state, Real dt_limit, Watch&& wat
     watch(Pass::pressures);
   }
   kernel::StableStep stable = kernel::stable_step(state);
-  stable.take(dt_limit, StepLimit::user);
+  stable.take(dt_limit, StepLimit::end);
   kernel::begin_step(state, stable.dt);
   watch(Pass::limits);
   if constexpr (has_liquid<M>) {

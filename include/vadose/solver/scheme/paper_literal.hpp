@@ -81,7 +81,7 @@ struct PaperLiteral {
     kernel::StableStep stable = kernel::stable_step(state);
     if (!Mends.implicit_drag && !state.frozen)
       stable.take(state.options.courant * kernel::drag_step(state), StepLimit::drag);
-    stable.take(dt_limit, StepLimit::user);
+    stable.take(dt_limit, StepLimit::end);
     kernel::begin_step(state, stable.dt);
     kernel::map_printed_liquid<Mends>(state);  // (a) liquid: mass, momentum, sums of Eq. (20)
     if constexpr (is_deformable<M>) kernel::map_loads(state);  // traction of Eq. (22)

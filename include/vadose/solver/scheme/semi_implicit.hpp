@@ -33,9 +33,9 @@ struct SemiImplicit {
     } else {
       state.system.report = {};
       kernel::find_pressures(state);  // (g) of the last step: water in the cells, p, S
-      if constexpr (is_deformable<M> && State<M>::dim == 1) kernel::find_conductivities(state);
+      if constexpr (has_skeleton<M>) kernel::find_conductivities(state);
       kernel::StableStep stable = kernel::implicit_step(state);
-      stable.take(dt_limit, StepLimit::user);
+      stable.take(dt_limit, StepLimit::end);
       begin(state, stable.dt);
       kernel::map_liquid(state);  // (a) liquid to nodes
       if constexpr (is_deformable<M>) {
@@ -68,7 +68,7 @@ struct SemiImplicit {
   template <class M>
   static bool predict_and_solve(State<M>& state, kernel::StableStep& stable) {
     const Vec<State<M>::dim> open_impulse = state.open_impulse;
-    if constexpr (has_skeleton<M>) kernel::find_faces(state);  // (c) k and S between cells
+    if constexpr (has_skeleton<M>) kernel::connect_cells(state);  // (c) k and S between cells
     if (state.frozen) {
       kernel::advance_nodes(state);
       kernel::find_rates(state);
@@ -125,7 +125,8 @@ struct SemiImplicit {
     const Real next =
         max(factor * stable.dt,
             state.options.quasi_static.on ? min(growth * stable.dt, system.wave_dt) : 0);
-    if (stable.limit == StepLimit::user && next < system.next_dt) return true;
+    const bool cut = stable.limit == StepLimit::user || stable.limit == StepLimit::end;
+    if (cut && next < system.next_dt) return true;
     system.next_dt = next;
     system.next_limit = reason;
     return true;
