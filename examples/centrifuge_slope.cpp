@@ -3,8 +3,9 @@
 // at 30 g: brought to equilibrium under suction, then zero suction held at its surface.
 //
 //   centrifuge_slope [--end-time 20] ...           --help lists the flags
-//   centrifuge_slope --paper --output out/centrifuge     10 mm cells, real water, 100 s
+//   centrifuge_slope --paper --output out/centrifuge     10 mm cells, real water, 100 s: days
 //   centrifuge_slope --paper --output out/centrifuge --resume    goes on from its checkpoint
+//   centrifuge_slope --scheme semi-implicit --bulk-modulus 2.2e9      quasi-static while it stands
 //
 // sand_slope is the same slope as a first example; this program is for the comparison with the paper.
 //
