@@ -3,8 +3,9 @@
 // at 30 g: brought to equilibrium under suction, then zero suction held at its surface.
 //
 //   centrifuge_slope [--end-time 20] ...           --help lists the flags
-//   centrifuge_slope --paper --output out/centrifuge     10 mm cells, real water, 100 s
+//   centrifuge_slope --paper --output out/centrifuge     10 mm cells, real water, 100 s: days
 //   centrifuge_slope --paper --output out/centrifuge --resume    goes on from its checkpoint
+//   centrifuge_slope --scheme semi-implicit --bulk-modulus 2.2e9      quasi-static while it stands
 //
 // sand_slope is the same slope as a first example; this program is for the comparison with the paper.
 //
@@ -24,7 +25,6 @@
 
 #include <cmath>
 #include <cstdio>
-#include <filesystem>
 #include <string>
 
 #include <examples/support/flags.hpp>
@@ -47,19 +47,21 @@ constexpr Real foundation = 0.1, height = 0.2, crest_x = 0.3, toe_x = 0.5, lengt
 constexpr Real solid_density = 2670, porosity = 0.48;  // [kg/m3], [-]
 constexpr Real scale = 30;                             // of the centrifuge
 
-enum class Scheme { explicit_steps, semi_implicit };
-
 struct Choices : example::RunChoices {
-  Real cell_size = 0.02;   // [m]
-  Real drag_gravity = 30;  // g in Eq. 2 over 9.81 m/s2
-  Real saturation_step = 0.002;
+  Real cell_size = 0.02;        // [m]
+  Real drag_gravity = 30;       // g in Eq. 2 over 9.81 m/s2
+  Real conductivity = 2.77e-3;  // k_sat at 1 g [m/s]
+  Real drainage = 0;            // [s]
   int points_per_axis = 2;
-  Scheme scheme = Scheme::explicit_steps;
-  bool three_dimensional = false, frozen_porosity = false, resume = false;
+  bool three_dimensional = false, frozen_porosity = false;
 
   Choices()
-      : RunChoices{
-            .end_time = 20, .bulk_modulus = 2.2e7, .frames = 20, .cone = vd::law::Cone::outer} {}
+      : RunChoices{.scheme = example::Scheme::explicit_steps,
+                   .inertia = 5e-3,
+                   .end_time = 8,
+                   .bulk_modulus = 2.2e7,
+                   .frames = 16,
+                   .cone = vd::law::Cone::outer} {}
 };
 
 Choices read(int count, char** words) {
@@ -68,21 +70,20 @@ Choices read(int count, char** words) {
       .number("--cell-size", "H", c.cell_size, "cells of H m that divide 1 and 0.4 m")
       .whole("--points-per-axis", c.points_per_axis, 8, "of a cell, for each phase")
       .on("--three-dimensional", c.three_dimensional, "one cell thick, 8 points per cell")
-      .choice<Scheme>(
-          "--scheme", c.scheme,
-          {{"explicit", Scheme::explicit_steps}, {"semi-implicit", Scheme::semi_implicit}})
       .number("--drag-gravity", "N", c.drag_gravity, "g in Eq. 2 as a multiple of 9.81 m/s2")
+      .number("--conductivity", "K", c.conductivity, "k_sat at 1 g in m/s")
+      .number("--drainage", "T", c.drainage, "s at 30 g before the rain in which the water drains")
       .on("--frozen-porosity", c.frozen_porosity, "S(s) and k(S) at the initial porosity")
-      .number("--saturation-step", "D", c.saturation_step,
-              "change of S that a semi-implicit step aims at")
       .preset(
-          "--paper", [&] { c.cell_size = 0.01, c.bulk_modulus = 2.2e9, c.end_time = 100; },
+          "--paper",
+          [&] { c.cell_size = 0.01, c.bulk_modulus = 2.2e9, c.end_time = 100, c.frames = 50; },
           "cells of 0.01 m, 2.2e9 Pa, 100 s: days")
-      .on("--resume", c.resume, example::resume_text)
+      .stepping(c)
+      .check(c)
       .common(c)
       .read(count, words);
-  vd::check::positive("--end-time", c.end_time, "s");
   vd::check::positive("--drag-gravity", c.drag_gravity, "-");
+  vd::check::non_negative("--drainage", c.drainage, "s");
   return c;
 }
 
@@ -103,7 +104,7 @@ vd::Material<M> silty_sand(const Choices& c) {
           .retention = {.residual_saturation = 0,
                         .a = 1.2,  // [1/m]
                         .porosity_dependent = !c.frozen_porosity},
-          .conductivity = {.saturated_conductivity = 2.77e-3 / c.drag_gravity,  // [m/s]
+          .conductivity = {.saturated_conductivity = c.conductivity / c.drag_gravity,  // [m/s]
                            .porosity_dependent = !c.frozen_porosity}};
 }
 
@@ -144,12 +145,7 @@ vd::Solver<M, S> start(const Choices& c) {
     scene.add(vd::bc::Roller{.face = vd::Face::front});
     scene.add(vd::bc::Roller{.face = vd::Face::back});
   }
-  return vd::Solver<M, S>{scene,
-                          {.courant = c.courant,
-                           .damping = c.damping,
-                           .transfer = {.pic_rate = c.pic_rate},
-                           .threads = c.threads,
-                           .saturation_step = c.saturation_step}};
+  return vd::Solver<M, S>{scene, example::solver_options<M, S>(c)};
 }
 
 // Gauges in the middle of cells: within a cell the pressure is read as that of water at rest.
@@ -175,26 +171,15 @@ vd::io::Gauges gauges(const Choices& c, const std::string& path) {
 }
 
 template <class M, class S>
-int run(const Choices& c) {
+example::Outcome run(const Choices& c) {
   constexpr int dim = M::Kinematics::dim;
-  std::filesystem::create_directories(c.output);
+  example::LongRun o = example::long_run(c, "centrifuge");
   vd::Solver<M, S> solver = start<M, S>(c);
-  example::LongRun o{.folder = c.output,
-                     .base = "centrifuge",
-                     .end_time = c.end_time,
-                     .frames = c.frames,
-                     .resume = c.resume};
   std::printf("%s, %dD, cells %g m, water of K = %g Pa, g in Eq. 2 = %g x 9.81 m/s2\n", S::name,
               dim, c.cell_size, c.bulk_modulus, c.drag_gravity);
-  if (!c.resume) {
-    const auto report = solver.equilibrate({.tolerance = 2e-3, .max_time = 0.3});
-    std::printf(
-        "at 30 g before the rain: out of balance %.1e of the weight, largest plastic shear strain "
-        "%.2g%s\n",
-        report.residual, example::largest_law_state(solver),
-        report.converged ? "" : "; NOT at rest");
-  }
-  solver.add(vd::bc::ZeroSuction{});
+  example::bring_to_rest(solver, o, {.tolerance = 2e-3, .max_time = 0.3});
+  const Real rain = c.drainage;
+  solver.add(vd::bc::ZeroSuction{.active = [rain](Real t) { return t >= rain; }});
   example::take_up(solver, o);
 
   vd::io::Gauges gauge = gauges<dim>(c, o.history("_gauges"));
@@ -202,34 +187,52 @@ int run(const Choices& c) {
                          {{"time", "s"}, {"largest", "m"}, {"depth", "m"}, {"front", "m"}}};
   example::Passages passages({0.001, 0.005, 0.01, 0.04});
   const Real slope_length = std::hypot(toe_x - crest_x, height) * (dim == 3 ? c.cell_size : 1);
-  Real depth = 0;
-  example::drive(solver, o,
-                 {"id", "displacement", "velocity", "porosity", "suction", "liquid_pressure",
-                  "saturation", "plastic_shear_strain", "mean_stress"},
-                 [&] {
-                   gauge.record(solver);
-                   const auto slide = example::measure_slide(solver, solid_density, porosity, 1e-3);
-                   depth = slide.volume / slope_length;
-                   passages.record(solver.time(), slide.largest);
-                   slides.add({solver.time(), slide.largest, depth, slide.front});
-                 });
+  example::Slide slide;
+  example::drive(
+      solver, o,
+      {"id", "displacement", "velocity", "porosity", "suction", "liquid_pressure", "saturation",
+       "plastic_shear_strain", "mean_stress"},
+      [&] {
+        gauge.record(solver);
+        slide = example::measure_slide(solver, solid_density, porosity, 1e-3);
+        passages.record(solver.time(), slide.largest);
+        slides.add({solver.time(), slide.largest, slide.volume / slope_length, slide.front});
+      });
   passages.print(stdout);
+  const Real depth = slide.volume / slope_length;
   std::printf("  slide    %.0f mm deep, %.2f m of the prototype\n", 1e3 * depth, scale * depth);
-  return 0;
+  return {slide, solver.water_balance()};
 }
 
-int choose(const Choices& c) {
+example::Outcome choose(const Choices& c) {
   using Flat = CentrifugeSlope<vd::PlaneStrain>;
   using Strip = CentrifugeSlope<vd::ThreeDimensional>;
-  if (c.three_dimensional && c.scheme == Scheme::semi_implicit)
-    throw vd::SetupError("--three-dimensional needs --scheme explicit");
-  if (c.three_dimensional) return run<Strip, vd::scheme::Explicit>(c);
-  if (c.scheme == Scheme::semi_implicit) return run<Flat, vd::scheme::SemiImplicit>(c);
-  return run<Flat, vd::scheme::Explicit>(c);
+  const bool implicit = c.scheme == example::Scheme::semi_implicit;
+  if (c.three_dimensional)
+    return implicit ? run<Strip, vd::scheme::SemiImplicit>(c) : run<Strip, vd::scheme::Explicit>(c);
+  return implicit ? run<Flat, vd::scheme::SemiImplicit>(c) : run<Flat, vd::scheme::Explicit>(c);
+}
+
+// Quasi-static steps under true water for half a second: the inflow is that of 116 677 explicit steps.
+int check(Choices c) {
+  constexpr Real explicit_inflow = 4.895;  // [kg/m]
+  c.scheme = example::Scheme::semi_implicit;
+  c.bulk_modulus = 2.2e9;
+  c.end_time = 0.5;
+  c.frames = 1;
+  const vd::WaterBalance water = choose(c).water;
+  return example::expect("inflow over that of explicit steps", water.inflow / explicit_inflow, 0.98,
+                         1.02) +
+         example::expect("closure of the water ledger", water.relative_closure(), -1e-12, 1e-12);
 }
 
 }  // namespace
 
 int main(int count, char** words) {
-  return example::guarded("centrifuge_slope", [&] { return choose(read(count, words)); });
+  return example::guarded("centrifuge_slope", [&] {
+    const Choices c = read(count, words);
+    if (c.check) return check(c);
+    choose(c);
+    return 0;
+  });
 }

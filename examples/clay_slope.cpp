@@ -18,7 +18,6 @@
 
 #include <cmath>
 #include <cstdio>
-#include <filesystem>
 #include <string>
 #include <type_traits>
 
@@ -48,10 +47,15 @@ struct Choices : example::RunChoices {
   Real cell_size = 0.5;       // [m]
   Real conductivity = 0.082;  // k_sat [m/s]
   Real suction = 5e5;         // at the surface [Pa]
+  Real friction_angle = 20;   // [degrees]
   int points_per_cell = 4;
-  bool rigid = false, resume = false;
+  bool rigid = false;
 
-  Choices() : RunChoices{.end_time = 10, .bulk_modulus = 2.2e8, .frames = 20} {}
+  Choices()
+      : RunChoices{.scheme = example::Scheme::explicit_steps,
+                   .end_time = 10,
+                   .bulk_modulus = 2.2e8,
+                   .frames = 20} {}
 };
 
 Choices read(int count, char** words) {
@@ -61,13 +65,15 @@ Choices read(int count, char** words) {
       .whole("--points-per-cell", c.points_per_cell, 64, "of each phase: 1, 4, 9, ...")
       .number("--conductivity", "K", c.conductivity, "k_sat in m/s; printed: 5")
       .number("--suction", "S", c.suction, "at the surface at the start in Pa")
+      .number("--friction-angle", "PHI", c.friction_angle, "in degrees; printed: 20")
       .on("--rigid", c.rigid, "the soil does not move: seepage alone")
       .preset(
-          "--paper", [&] { c.bulk_modulus = 2.2e9, c.end_time = 280; }, "2.2e9 Pa, 280 s")
-      .on("--resume", c.resume, example::resume_text)
+          "--paper", [&] { c.bulk_modulus = 2.2e9, c.end_time = 280, c.frames = 28; },
+          "2.2e9 Pa, 280 s: hours")
+      .stepping(c)
+      .check(c)
       .common(c)
       .read(count, words);
-  vd::check::positive("--end-time", c.end_time, "s");
   return c;
 }
 
@@ -83,7 +89,7 @@ vd::Material<M> sandy_clay(const Choices& c) {
     clay.solid_density = solid_density;
     clay.skeleton = {.elastic = {.young_modulus = 10e6, .poisson_ratio = 0.33},
                      .cohesion = 0,
-                     .friction_angle = vd::degrees(20.0),
+                     .friction_angle = vd::degrees(c.friction_angle),
                      .dilation_angle = 0,
                      .tensile_strength = 0,
                      .cone = c.cone};
@@ -99,8 +105,8 @@ Real ground(Real x) {
   return top - height * std::min(1.0, std::max(0.0, (x - crest_x) / (toe_x - crest_x)));
 }
 
-template <class M>
-vd::Solver<M> start(const Choices& c) {
+template <class M, class S>
+vd::Solver<M, S> start(const Choices& c) {
   vd::Scene<M> scene{{.box = {{0.0, 0.0}, {length, 14.0}}, .cell_size = c.cell_size}};
   scene.gravity = {0.0, -9.81};
   scene.liquid = {.density = liquid_density, .bulk_modulus = c.bulk_modulus};
@@ -117,11 +123,7 @@ vd::Solver<M> start(const Choices& c) {
     scene.add(vd::bc::Roller{.face = vd::Face::right});
   }
   scene.add_soil(slope, sandy_clay<M>(c), options);
-  return vd::Solver<M>{scene,
-                       {.courant = c.courant,
-                        .damping = c.damping,
-                        .transfer = {.pic_rate = c.pic_rate},
-                        .threads = c.threads}};
+  return vd::Solver<M, S>{scene, example::solver_options<M, S>(c)};
 }
 
 // Gauges in the middle of cells, below the crest, the middle of the slope and the ground at its toe.
@@ -150,55 +152,60 @@ vd::io::Gauges gauges(const Choices& c, const std::string& path) {
   return g;
 }
 
-template <class M>
-int run(const Choices& c) {
-  std::filesystem::create_directories(c.output);
-  vd::Solver<M> solver = start<M>(c);
-  example::LongRun o{.folder = c.output,
-                     .base = "clay",
-                     .end_time = c.end_time,
-                     .frames = c.frames,
-                     .resume = c.resume};
-  std::printf("cells %g m, k_sat = %g m/s, water of K = %g Pa%s\n", c.cell_size, c.conductivity,
-              c.bulk_modulus, c.rigid ? ", rigid soil" : "");
-  if constexpr (vd::is_deformable<M>) {
-    if (!c.resume) {
-      const auto report = solver.equilibrate({.tolerance = 1e-3, .max_time = 20});
-      std::printf(
-          "before the rain: out of balance %.1e of the weight, largest plastic shear strain "
-          "%.2g%s\n",
-          report.residual, example::largest_law_state(solver),
-          report.converged ? "" : "; NOT at rest");
-    }
-  }
+template <class M, class S>
+example::Outcome run(const Choices& c) {
+  example::LongRun o = example::long_run(c, "clay");
+  vd::Solver<M, S> solver = start<M, S>(c);
+  std::printf("%s, cells %g m, k_sat = %g m/s, water of K = %g Pa%s\n", S::name, c.cell_size,
+              c.conductivity, c.bulk_modulus, c.rigid ? ", rigid soil" : "");
+  if constexpr (vd::is_deformable<M>)
+    example::bring_to_rest(solver, o, {.tolerance = 1e-3, .max_time = 20});
   solver.add(vd::bc::ZeroSuction{});
   example::take_up(solver, o);
 
+  example::Slide slide;
   vd::io::Gauges gauge = gauges<M>(c, o.history("_gauges"));
   if constexpr (vd::is_deformable<M>) {
     vd::io::History slides{o.history("_slide"),
                            {{"time", "s"}, {"largest", "m"}, {"depth", "m"}, {"front", "m"}}};
     example::Passages passages({0.01, 0.1, 1});
     const Real slope_length = std::hypot(toe_x - crest_x, height);
-    Real depth = 0;
-    example::drive(solver, o,
-                   {"id", "displacement", "velocity", "porosity", "suction", "liquid_pressure",
-                    "saturation", "plastic_shear_strain", "mean_stress"},
-                   [&] {
-                     gauge.record(solver);
-                     const auto slide =
-                         example::measure_slide(solver, solid_density, porosity, 0.05);
-                     depth = slide.volume / slope_length;
-                     passages.record(solver.time(), slide.largest);
-                     slides.add({solver.time(), slide.largest, depth, slide.front});
-                   });
+    example::drive(
+        solver, o,
+        {"id", "displacement", "velocity", "porosity", "suction", "liquid_pressure", "saturation",
+         "plastic_shear_strain", "mean_stress"},
+        [&] {
+          gauge.record(solver);
+          slide = example::measure_slide(solver, solid_density, porosity, 0.05);
+          passages.record(solver.time(), slide.largest);
+          slides.add({solver.time(), slide.largest, slide.volume / slope_length, slide.front});
+        });
     passages.print(stdout);
-    std::printf("  slide    %.2f m deep\n", depth);
+    std::printf("  slide    %.2f m deep\n", slide.volume / slope_length);
   } else {
     example::drive(solver, o, {"id", "suction", "liquid_pressure", "saturation"},
                    [&] { gauge.record(solver); });
   }
-  return 0;
+  return {slide, solver.water_balance()};
+}
+
+example::Outcome choose(const Choices& c) {
+  if (c.scheme == example::Scheme::explicit_steps)
+    return c.rigid ? run<RigidSlope, vd::scheme::Explicit>(c)
+                   : run<ClaySlope, vd::scheme::Explicit>(c);
+  return c.rigid ? run<RigidSlope, vd::scheme::SemiImplicit>(c)
+                 : run<ClaySlope, vd::scheme::SemiImplicit>(c);
+}
+
+// It falls as soon as it is wet: in cells of 0.5 m by 0.1 m within 1.6 s.
+int check(Choices c) {
+  c.cell_size = 1;
+  c.bulk_modulus = 2.2e7;
+  c.end_time = 2;
+  c.frames = 1;
+  const example::Outcome o = choose(c);
+  return example::expect("largest displacement after 2 s [m]", o.slide.largest, 0.05, 0.5) +
+         example::expect("closure of the water ledger", o.water.relative_closure(), -1e-12, 1e-12);
 }
 
 }  // namespace
@@ -206,6 +213,8 @@ int run(const Choices& c) {
 int main(int count, char** words) {
   return example::guarded("clay_slope", [&] {
     const Choices c = read(count, words);
-    return c.rigid ? run<RigidSlope>(c) : run<ClaySlope>(c);
+    if (c.check) return check(c);
+    choose(c);
+    return 0;
   });
 }

@@ -11,8 +11,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <cstdio>
-#include <filesystem>
 #include <string>
 
 #include <examples/support/flags.hpp>
@@ -36,7 +36,6 @@ constexpr Real hour = 3600;                            // [s]
 struct Choices : example::RunChoices {
   Real cell_size = 0.25;  // [m]
   Real rate = 4e-6;       // of the rain [m/s]
-  Real inertia = 1e-4;    // see QuasiStatic
 
   Choices() : RunChoices{.end_time = 23 * hour, .damping = 0, .frames = 23} {}
 };
@@ -46,10 +45,11 @@ Choices read(int count, char** words) {
   example::Flags("storm_slope: a day of rain, seconds of failure")
       .number("--cell-size", "H", c.cell_size, "cells of H m")
       .number("--rain", "R", c.rate, "m/s per horizontal area")
-      .number("--inertia", "I", c.inertia, "inertia over weights and loads that slow steps aim at")
+      .quasi_static(c)
+      .check(c)
+      .resume(c)
       .common(c)
       .read(count, words);
-  vd::check::positive("--end-time", c.end_time, "s");
   return c;
 }
 
@@ -77,12 +77,7 @@ Solver start(const Choices& c) {
   scene.add(vd::bc::Roller{.face = vd::Face::left});
   scene.add(vd::bc::Roller{.face = vd::Face::right});
   scene.add(vd::bc::SeepageFace{.face = vd::Face::right});
-  return Solver{scene,
-                {.courant = c.courant,
-                 .damping = c.damping,
-                 .transfer = {.pic_rate = c.pic_rate},
-                 .threads = c.threads,
-                 .quasi_static = {.on = true, .inertia = c.inertia}}};
+  return Solver{scene, example::solver_options<Storm, vd::scheme::SemiImplicit>(c)};
 }
 
 Real largest_speed(const Solver& solver) {
@@ -97,59 +92,57 @@ Real largest_speed(const Solver& solver) {
 // Rows of the history come with steps, not times: what happens within seconds is to be seen.
 class Course {
  public:
-  Course(const std::string& path, std::size_t every)
+  Course(const std::string& path, std::int64_t every)
       : file_(path, {{"time", "s"}, {"displacement", "m"}, {"speed", "m/s"}, {"step", "s"}}),
         every_(every) {}
   void record(const Solver& solver, const vd::StepReport& step) {
-    if (static_cast<std::size_t>(step.step) % every_ != 0) return;
+    if (step.step % every_ != 0) return;
     const auto slide = example::measure_slide(solver, solid_density, porosity, 0.01);
     file_.add({step.time, slide.largest, largest_speed(solver), step.dt});
     passages_.record(step.time, slide.largest);
-    longest_ = std::max(longest_, step.dt);
-    shortest_ = std::min(shortest_, step.dt);
   }
-  void print(std::FILE* out) const {
-    passages_.print(out);
-    std::fprintf(out, "  steps    of %.2g to %.2g s\n", shortest_, longest_);
-  }
+  void print(std::FILE* out) const { passages_.print(out); }
 
  private:
   vd::io::History file_;
-  std::size_t every_;
+  std::int64_t every_;
   example::Passages passages_{{0.001, 0.01, 0.05}};
-  Real longest_ = 0, shortest_ = 1e30;
 };
 
-int run(const Choices& c) {
-  std::filesystem::create_directories(c.output);
+vd::WaterBalance run(const Choices& c) {
+  example::LongRun o = example::long_run(c, "storm");
+  o.records = 1;
   Solver solver = start(c);
-  const auto rest = solver.equilibrate({.tolerance = 1e-3, .max_time = 5});
-  std::printf("before the rain: out of balance %.1e of the weight\n", rest.residual);
+  example::bring_to_rest(solver, o, {.tolerance = 1e-3, .max_time = 5});
   solver.add(vd::bc::Rain{.rate = c.rate});
-  const std::string base = c.output + "/storm";
-  vd::io::VtkSeries vtk{base, {"displacement", "velocity", "suction", "saturation"}};
-  vd::io::WaterBalanceHistory balance{base + "_balance.csv"};
-  Course course{base + "_course.csv", 20};
-  vd::io::Progress progress{c.end_time};
-  const vd::io::RunClock clock{solver};
-  for (int frame = 0; frame <= c.frames; ++frame) {
-    const Real end = c.end_time * frame / c.frames;
-    while (solver.time() < end) {
-      const auto step = solver.step(end);
-      if (step.status != vd::Status::ok) throw vd::InstabilityError(step);
-      course.record(solver, step);
-      progress.update(solver.time(), static_cast<std::uint64_t>(solver.steps()));
-    }
-    balance.record(solver);
-    vtk.write(solver);
-  }
-  vd::io::print_summary(stdout, solver, clock);
+  example::take_up(solver, o);
+  Course course{o.history("_course"), 20};
+  example::drive(
+      solver, o, {"id", "displacement", "velocity", "suction", "saturation"}, [] {},
+      [&](const vd::StepReport& step) { course.record(solver, step); });
   course.print(stdout);
-  return 0;
+  return solver.water_balance();
+}
+
+// For two hours all rain soaks in.
+int check(Choices c) {
+  c.cell_size = 0.5;
+  c.end_time = 2 * hour;
+  c.frames = 1;
+  const vd::WaterBalance water = run(c);
+  return example::expect("water in the pores over rain fallen",
+                         (water.pore - water.initial) / (1000 * 10 * c.rate * c.end_time), 0.999,
+                         1.001) +
+         example::expect("closure of the water ledger", water.relative_closure(), -1e-12, 1e-12);
 }
 
 }  // namespace
 
 int main(int count, char** words) {
-  return example::guarded("storm_slope", [&] { return run(read(count, words)); });
+  return example::guarded("storm_slope", [&] {
+    const Choices c = read(count, words);
+    if (c.check) return check(c);
+    run(c);
+    return 0;
+  });
 }

@@ -51,7 +51,7 @@ def main():
         cut = np.abs(points["Points"][:, 1] - middle) < spacing
         suction = 1e-3 * mean_of_cells(points["suction"], points["Points"], 2 * spacing)
         section = axes[1, column].scatter(points["Points"][cut, 0], points["Points"][cut, 2],
-                                          c=suction[cut], s=4, marker="s",
+                                          c=suction[cut], s=14, marker="s",
                                           linewidths=0, cmap="viridis_r", vmin=0, vmax=10)
         axes[1, column].set_xlabel("x [m]")
         axes[1, column].set_ylabel("z [m]")

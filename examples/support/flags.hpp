@@ -20,21 +20,27 @@ namespace example {
 
 using vadose::Real;
 
+/// How a long run steps through time.
+enum class Scheme { explicit_steps, semi_implicit };
+
 /// What the long examples let their users choose alike; each has defaults of its own.
 struct RunChoices {
-  Real end_time = 1;          ///< [s]
-  Real bulk_modulus = 2.2e9;  ///< of the water [Pa]
-  Real courant = 0.5;         ///< [-]
-  Real damping = 0.05;        ///< local, of the skeleton [-]
-  Real pic_rate = 1;          ///< relaxation of point velocities to the grid's [1/s]
-  int frames = 10;            ///< states written after the first
-  int threads = 1;            ///< more pay only where every one has a processor to itself
+  Scheme scheme = Scheme::semi_implicit;
+  bool quasi_static = true;      ///< slow periods in long steps; semi-implicit runs only
+  Real inertia = 1e-4;           ///< see vadose::QuasiStatic [-]
+  Real saturation_step = 0.002;  ///< change of S that a semi-implicit step aims at [-]
+  bool resume = false;           ///< go on from a checkpoint
+  bool check = false;            ///< a reduced run, compared with bounds
+  Real end_time = 1;             ///< [s]
+  Real bulk_modulus = 2.2e9;     ///< of the water [Pa]
+  Real courant = 0.5;            ///< [-]
+  Real damping = 0.05;           ///< local, of the skeleton [-]
+  Real pic_rate = 1;             ///< relaxation of point velocities to the grid's [1/s]
+  int frames = 10;               ///< states written after the first
+  int threads = 1;               ///< more pay only where every one has a processor to itself
   vadose::law::Cone cone = vadose::law::Cone::plane_strain_matched;
   std::string output = ".";  ///< folder of the results
 };
-
-/// Of the flag --resume.
-inline constexpr const char* resume_text = "go on from the checkpoint in the output folder";
 
 /// Flags by name, each with a word for its value and a line for --help, which shows its default too.
 /// read() raises SetupError on an unknown flag or a value that does not fit.
@@ -98,6 +104,30 @@ class Flags {
         .whole("--frames", c.frames, 10000, "states written as VTK files")
         .whole("--threads", c.threads, 1024, "needs OpenMP and as many idle processors")
         .word("--output", "DIR", c.output, "folder for the results");
+  }
+
+  /// Those of the long examples that choose how they step and can go on from a checkpoint.
+  Flags& stepping(RunChoices& c) {
+    return choice<Scheme>(
+               "--scheme", c.scheme,
+               {{"explicit", Scheme::explicit_steps}, {"semi-implicit", Scheme::semi_implicit}})
+        .quasi_static(c)
+        .choice<bool>("--quasi-static", c.quasi_static, {{"on", true}, {"off", false}})
+        .resume(c);
+  }
+  /// Those of runs that are always semi-implicit and quasi-static.
+  Flags& quasi_static(RunChoices& c) {
+    return number("--inertia", "I", c.inertia,
+                  "inertia over weights and loads that slow steps aim at")
+        .number("--saturation-step", "D", c.saturation_step,
+                "change of S that a semi-implicit step aims at");
+  }
+  Flags& resume(RunChoices& c) {
+    return on("--resume", c.resume, "go on from the checkpoint in the output folder");
+  }
+
+  Flags& check(RunChoices& c) {
+    return on("--check", c.check, "a reduced run of seconds, compared with bounds");
   }
 
   /// Reads the command line; --help prints the usage and ends the program.
