@@ -84,6 +84,13 @@ std::int32_t flux_node(const State<M>& state, const CellView<M>& view, int axis,
   return state.grid.entry(node);
 }
 
+/// A flux per area through the ground or a wall [m/s] and its derivatives.
+struct SurfaceFlux {
+  Real value = 0;
+  Real head_slope = 0;   ///< to the head gradient [m/s per Pa/m]
+  Real grain_slope = 0;  ///< to the mean velocity of the grains at the face [-]
+};
+
 /// Flux per area through the ground or a wall: drag and inertia of the water at the face itself, which
 /// goes on with the velocity of its nodes before the step: q [rho / (n S dt) + gamma / k] =
 /// rho (v^l_old - v^s) / dt - H. The new velocities of the nodes answer to all the faces around them; on a
@@ -92,7 +99,8 @@ std::int32_t flux_node(const State<M>& state, const CellView<M>& view, int axis,
 /// that fly off (they would draw water after them, more of it the faster they are). Without its inertia it
 /// rings from step to step where the drag is slower than a step.
 template <class M>
-Real surface_flux(const State<M>& state, const CellView<M>& view, int axis, const FaceFlux& face) {
+SurfaceFlux surface_flux(const State<M>& state, const CellView<M>& view, int axis,
+                         const FaceFlux& face) {
   constexpr int dim = State<M>::dim;
   const auto& nodes = state.nodes;
   Real water = 0, grains = 0;
@@ -105,16 +113,21 @@ Real surface_flux(const State<M>& state, const CellView<M>& view, int axis, cons
   });
   constexpr Real corners = power<dim - 1>(2.0);
   const auto& soil = soil_cell(view, axis, face);
-  const auto passes = [&](Real velocity, Real inertia) {
-    const Real drive = state.water.density / state.dt * velocity / corners - face.head_gradient;
-    return driven_flux(state, face, soil, drive, inertia).value;
+  const Real per_velocity = state.water.density / state.dt;
+  const auto passes = [&](Real velocity, Real inertia, bool by_grains) -> SurfaceFlux {
+    const Real drive = per_velocity * velocity / corners - face.head_gradient;
+    const auto flux = driven_flux(state, face, soil, drive, inertia);
+    return {flux.value, -flux.slope, by_grains ? -per_velocity * flux.slope : 0};
   };
-  const Real into = face.soil_below ? -1 : 1, flux = passes(water - grains, 1);
+  const Real into = face.soil_below ? -1 : 1;
+  const SurfaceFlux flux = passes(water - grains, 1, true);
   const bool wall = view.cell[axis] == 0 || view.cell[axis] == state.grid.cells()[axis];
   const Real own = into * min(into * (water - grains), max(0.0, into * water));
-  if (wall || into * flux <= 0 || own == water - grains) return flux;
-  const Real most = max(into * passes(0, 0), into * passes(own, 1));
-  return into * min(into * flux, max(0.0, most));
+  if (wall || into * flux.value <= 0 || own == water - grains) return flux;
+  const SurfaceFlux steady = passes(0, 0, false), coasting = passes(own, 1, false);
+  const SurfaceFlux most = into * steady.value > into * coasting.value ? steady : coasting;
+  if (into * most.value <= 0) return {};
+  return into * flux.value < into * most.value ? flux : most;
 }
 
 /// Part of the flux at a held pressure that passes [-]: all of it down its head gradient, else what drag
@@ -140,7 +153,7 @@ Real leaving_share(const State<M>& state, const CellView<M>& view, int axis, con
 template <class M>
 Real nodal_flux(const State<M>& state, const CellView<M>& view, int axis, const FaceFlux& face) {
   constexpr int dim = State<M>::dim;
-  if (face.kind == FaceKind::surface) return surface_flux(state, view, axis, face);
+  if (face.kind == FaceKind::surface) return surface_flux(state, view, axis, face).value;
   const auto& nodes = state.nodes;
   Real velocity = 0, head_gradient = 0, mean_gradient = 0;
   for_cube<dim>(0, 2, [&](const Index<dim>& corner) {

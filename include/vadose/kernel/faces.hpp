@@ -162,6 +162,7 @@ void inside_face(const State<M>& state, int axis, const Cell<State<M>::dim>& a,
   face.kind = FaceKind::inside;
   face.distance = distance;
   face.head_gradient = drop / distance;
+  face.from_above = drop > 0;
   face.saturation = up.saturation;
   const Real factor = up.saturation > 0 ? series_factor(a, b, up) *
                                               (0.5 * (a.saturation + b.saturation) / up.saturation)

@@ -135,6 +135,7 @@ struct FaceFlux {
   bool thirsty = false;     ///< the soil drinks all it is given: its surface stays under suction
   Real supply = 0;          ///< what a fed or thirsty face can take at most [m3/s]
   bool soil_below = false;  ///< of a surface or to_free face: the soil is on the lower side
+  bool from_above = false;  ///< of an inside face: the upper cell is upstream as the step begins
 
   /// A surface that lets no water through, as far as pressures and nodes are concerned.
   bool is_shut() const noexcept {
@@ -142,7 +143,7 @@ struct FaceFlux {
   }
   /// Whether the soil that lets the water pass is above: the upstream cell, at a boundary the soil.
   bool is_from_above() const noexcept {
-    return kind == FaceKind::inside ? head_gradient > 0 : !soil_below;
+    return kind == FaceKind::inside ? from_above : !soil_below;
   }
 };
 

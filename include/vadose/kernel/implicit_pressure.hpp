@@ -376,6 +376,12 @@ void find_implicit_fluxes(State<M>& state) {
             face.flux = face.soil_below ? -in : in;
           } else if (face.kind == FaceKind::closed || face.is_shut()) {
             face.flux = 0;
+          } else if (face.kind == FaceKind::surface) {
+            const SurfaceFlux flux = surface_flux(state, view, d, face);
+            face.flux = face.area * flux.value;
+            state.system
+                .surface_slope[static_cast<std::size_t>(e) * dim + static_cast<std::size_t>(d)] = {
+                flux.head_slope, flux.grain_slope};
           } else {
             face.flux = face.area * nodal_flux(state, view, d, face);
           }
@@ -567,6 +573,11 @@ struct NodeAssembly {
     return state.nodes.cell[static_cast<std::size_t>(owner)];
   }
 
+  /// How a face of the ground or a wall answers, by the last trial.
+  const SurfaceSlope& slopes_of(int axis, int k) const {
+    return state.system.surface_slope[faces.face[axis][k]];
+  }
+
   /// Flux through faces by the velocities of the node.
   void add_fluxes(int column, const Real (&liquid)[dim], const Real (&solid)[dim]) {
     const Record& resistances = state.nodes.mixture[static_cast<std::size_t>(view.entry())];
@@ -580,11 +591,13 @@ struct NodeAssembly {
                    area * face.saturation * response.porosity * (liquid[d] - solid[d]));
           continue;
         }
-        const Real mobility = face_mobility(state, face, soil_of(d, k), 1);
-        const Real drive = face.kind == FaceKind::surface
-                               ? -state.water.density / state.dt * solid[d]
-                               : resistances[4 + d] * response.porosity * (liquid[d] - solid[d]);
-        add_flux(d, k, column, area * mobility * drive);
+        if (face.kind == FaceKind::surface) {
+          add_flux(d, k, column, area * slopes_of(d, k).grain * solid[d]);
+          continue;
+        }
+        add_flux(d, k, column,
+                 area * face_mobility(state, face, soil_of(d, k), 1) * resistances[4 + d] *
+                     response.porosity * (liquid[d] - solid[d]));
       }
   }
 
@@ -598,7 +611,8 @@ struct NodeAssembly {
       const bool surface = face.kind == FaceKind::surface;
       const Real mobility =
           face.area / (corners / 2) *
-          face_mobility(state, face, soil_of(axis, k), surface ? 1 : checkerboard_inertia);
+          (surface ? -slopes_of(axis, k).head
+                   : face_mobility(state, face, soil_of(axis, k), checkerboard_inertia));
       for (int j = 0; j < count; ++j) {
         const FaceFlux& other = state.nodes.face[faces.face[axis][j]];
         const Real weight = mobility * ((j == k ? 1.0 : 0.0) - (surface ? 0.0 : 1.0 / count));
@@ -720,6 +734,22 @@ inline Real safe_change(Real pressure, Real change, Real floor, bool early) noex
   return max(change, floor - pressure);
 }
 
+/// The same between the last pressures that left too much water and too little: a change past one of them
+/// would go to and fro between a full cell and one whose highest points drain. Their chord then (Illinois: the
+/// residual of an end that stays counts half).
+template <int Dim>
+Real bracketed_change(PressureUnknown<Dim>& u, Real residual, Real change) noexcept {
+  auto& own = residual > 0 ? u.low : u.high;
+  auto& other = residual > 0 ? u.high : u.low;
+  if (u.last_residual * residual > 0) other.residual *= 0.5;
+  u.last_residual = residual;
+  own = {u.pressure, residual, true};
+  const Real back = other.pressure - u.pressure;
+  if (!other.known || change * back <= 0 || std::fabs(change) < 0.99 * std::fabs(back))
+    return change;
+  return back * residual / (residual - other.residual);
+}
+
 /// Adds the solution of the linear system to the pressures; returns the largest change in relation to
 /// 1e-9 of the pressure and 1e-6 Pa.
 template <class M>
@@ -731,7 +761,9 @@ Real change_pressures(State<M>& state, int iteration) {
     if constexpr (has_skeleton<M>)
       if (!u.free) {
         const Real floor = is_unsaturated<M> ? state.soils[cell.material].pressure_floor : -1e30;
-        if (is_unsaturated<M>) change = safe_change(u.pressure, change, floor, iteration < 12);
+        if (is_unsaturated<M>)
+          change = bracketed_change(u, system.residual[row],
+                                    safe_change(u.pressure, change, floor, iteration < 12));
       }
     u.pressure += change;
     system.worst[row] = std::fabs(change) / (1e-6 + 1e-9 * std::fabs(u.pressure));
@@ -883,6 +915,7 @@ bool solve_pressures(State<M>& state) {
   update_pattern(state);
   system.blocks.resize(state.grid.size());
   system.start_gradient.resize(state.nodes.face.size());
+  system.surface_slope.resize(state.nodes.face.size());
   for (std::size_t i = 0; i < state.nodes.face.size(); ++i)
     system.start_gradient[i] = state.nodes.face[i].head_gradient;
   Real change = 1e300;

@@ -35,6 +35,13 @@ struct NodeResponse {
   bool active = false;                           ///< has mass
 };
 
+/// A trial pressure and what it left unbalanced.
+struct PressureBound {
+  Real pressure = 0;  ///< [Pa]
+  Real residual = 0;  ///< [m3]
+  bool known = false;
+};
+
 /// Pressure unknown of the implicit solution.
 template <int Dim>
 struct PressureUnknown {
@@ -52,6 +59,8 @@ struct PressureUnknown {
   Real bishop_slope = 1;           ///< its derivative [-]
   Real storage = 0;                ///< derivative of the content to the trial pressure [m3/Pa]
   Real squeeze = 0;                ///< derivative of the content to dt div v^s [m3]
+  Real last_residual = 0;          ///< of the trial before this one [m3]
+  PressureBound low, high;         ///< last trials that left too much water, and too little
   bool free = false;               ///< free water
   bool held = false;               ///< at the driest pressure and wants to be drier
 };
@@ -65,6 +74,12 @@ struct SolveReport {
   Real saturation_change = 0;  ///< largest change of saturation in a cell [-]
   Real inertia = 1;        ///< factor of the inertia of the grains, 1 but in quasi-static steps [-]
   Real inertia_share = 0;  ///< of inertia in the weights and loads, in quasi-static steps [-]
+};
+
+/// Derivatives of the flux per area at a face of the ground or of a wall.
+struct SurfaceSlope {
+  Real head = 0;   ///< to its head gradient [m/s per Pa/m]
+  Real grain = 0;  ///< to the mean velocity of the grains there [-]
 };
 
 /// Everything an implicit solution keeps. Only next_dt, next_limit and inertia_share outlive the step.
@@ -86,6 +101,7 @@ struct PressureSystem {
   std::vector<std::int32_t> row_of;                 ///< unknown of a cell that owns one, else -1
   std::vector<std::int32_t> last_row_of, last_dof;  ///< that the pattern was made for
   std::vector<Real> start_gradient;                 ///< of the faces before the step [Pa/m]
+  std::vector<SurfaceSlope> surface_slope;          ///< of faces of the ground and of walls
   std::vector<NodeBlock> blocks;                    ///< per node
   std::vector<Real> residual, change, worst;
   SparseRows matrix;
