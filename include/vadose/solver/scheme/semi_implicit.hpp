@@ -115,16 +115,17 @@ struct SemiImplicit {
                 jolts ? StepLimit::inertia : StepLimit::accuracy};
       return false;
     }
-    const Real still = kernel::inertia_factor(state, system.inertia_share);
-    const Real most = state.options.quasi_static.on ? quasi_static_growth : growth;
-    if (min(still, most) < factor) {
-      factor = max(0.5, min(still, most));
-      reason = StepLimit::inertia;
+    if (state.options.quasi_static.on) {
+      const Real still = kernel::inertia_factor(state, system.inertia_share);
+      // Inertia lets no step stay below that of the waves.
+      const Real calm =
+          max(max(0.5, min(still, quasi_static_growth)), min(growth, system.wave_dt / stable.dt));
+      if (calm < factor) {
+        factor = calm;
+        reason = StepLimit::inertia;
+      }
     }
-    // Waves bound no step of soil that does not move; those that do stay at the step of the waves at least.
-    const Real next =
-        max(factor * stable.dt,
-            state.options.quasi_static.on ? min(growth * stable.dt, system.wave_dt) : 0);
+    const Real next = factor * stable.dt;
     const bool cut = stable.limit == StepLimit::user || stable.limit == StepLimit::end;
     if (cut && next < system.next_dt) return true;
     system.next_dt = next;
