@@ -117,9 +117,11 @@ struct SemiImplicit {
     }
     if (state.options.quasi_static.on) {
       const Real still = kernel::inertia_factor(state, system.inertia_share);
-      // Inertia lets no step stay below that of the waves.
+      // Inertia lets no step stay below that of the waves; in columns, whose water holds the soil beyond it,
+      // it lets none become shorter.
+      const Real back = State<M>::dim > 1 ? growth : 1;
       const Real calm =
-          max(max(0.5, min(still, quasi_static_growth)), min(growth, system.wave_dt / stable.dt));
+          max(max(0.5, min(still, quasi_static_growth)), min(back, system.wave_dt / stable.dt));
       if (calm < factor) {
         factor = calm;
         reason = StepLimit::inertia;
