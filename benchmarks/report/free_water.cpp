@@ -19,6 +19,6 @@ int main(int count, char** arguments) {
   all.add(standard, "dam seepage", verify::DamSeepage{}, planes);
   all.add(standard, "U-tube one leg falls", verify::FallingLeg{}, {{10}, {20}, {40}});
   all.add(quiet, "U-tube two ponds", verify::UTubePonds{}, planes);
-  all.add(quiet, "U-tube swings", verify::UTubeLeg{}, {{10}, {40}, {80}});
+  all.add(quiet, "U-tube swings", verify::UTubeLeg{}, planes);
   return all.run(count, arguments);
 }

@@ -243,7 +243,7 @@ TEST_CASE("checkpoint: files that cannot be written or read are clear errors") {
   CHECK(about(other) == ": it was written with another order of bytes");
   other = good;
   other[12] = 9;
-  CHECK(about(other) == ": its version is 9, this library reads version 4");
+  CHECK(about(other) == ": its version is 9, this library reads version 5");
   CHECK(about(good.substr(0, good.size() - 1)).find("bytes, ") != std::string::npos);
   other = good;
   other[other.find("solid points") + 200] ^= 1;

@@ -13,10 +13,11 @@ namespace vadose {
 /// What a face between two pressures knows, for numbers or lanes T.
 template <class T>
 struct FaceState {
-  T pressure_a, pressure_b;  ///< liquid pressures on its sides [Pa]
-  T porosity;                ///< [-]
-  T upstream;                ///< conductivity of the upstream side [m/s]
-  T gravity_head;            ///< G = rho_l |g . dx| between the sides [Pa], >= 0
+  T pressure_a;    ///< liquid pressure on one side [Pa]
+  T pressure_b;    ///< and on the other [Pa]
+  T porosity;      ///< [-]
+  T upstream;      ///< conductivity of the upstream side [m/s]
+  T gravity_head;  ///< G = rho_l |g . dx| between the sides [Pa], >= 0
 };
 
 /// A mean of conductivities: `mean(integral, face)` [m/s] for faces with suction on a side at least.

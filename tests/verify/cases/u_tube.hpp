@@ -42,17 +42,10 @@ struct UTubeLeg {
     return 2 * std::numbers::pi / std::sqrt(undamped() * undamped() - damping() * damping());
   }
   Real seconds(Real time) const { return time * 2 * std::numbers::pi / undamped(); }
-  /// Mean velocity of the free water [m/s].
+  /// Level of the free water above rest by its mass [m]; smooth where its velocity carries sound.
   template <class Solver>
-  static Real velocity(const Solver& solver) {
-    Real momentum = 0, mass = 0;
-    const auto& water = solver.liquid();
-    water.for_each([&](std::size_t b, int l) {
-      if (water.at(vadose::field::position, b, 0)[l] < plug) return;
-      momentum += water.at(vadose::field::mass, b)[l] * water.at(vadose::field::velocity, b, 0)[l];
-      mass += water.at(vadose::field::mass, b)[l];
-    });
-    return momentum / mass;
+  Real level(const Solver& solver) const {
+    return solver.water_balance().free / 1000 - depth;
   }
 
   template <class V>
@@ -74,7 +67,7 @@ struct UTubeLeg {
     scene.add_water(vadose::box({plug}, {top}), {.liquid_pressure = pressure});
     scene.add(vadose::bc::PrescribedHead{.face = vadose::Face::bottom, .head = depth + plug});
     using Solver = vadose::Solver<Model, typename V::Scheme>;
-    auto quantity = [](const Solver& s) { return velocity(s); };
+    auto quantity = [*this](const Solver& s) { return level(s); };
     return Swinging<Solver, decltype(quantity)>{Solver(scene, {.courant = r.courant}), quantity};
   }
 

@@ -9,6 +9,7 @@ namespace vadose::interblock {
 /// The default: upstream for what gravity drives, the mean over the pressures between (Kirchhoff) for what
 /// suction drives, weighted by both, see blend_conductivity. DEVIATION: [Zhan] takes k at the points.
 struct KirchhoffBlend {
+  /// The blend [m/s].
   template <class Integral, class T>
   static T mean(const Integral& integral, const FaceState<T>& face) noexcept {
     return blend_conductivity<T>(face.upstream,
