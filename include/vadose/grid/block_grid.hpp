@@ -117,8 +117,8 @@ class BlockGrid {
   /// Cell of a position along an axis, clamped into the box.
   int cell_of(Real x, int axis) const noexcept {
     const Real u = (x - origin_[axis]) / cell_size_;
-    const int c = u > 0 ? static_cast<int>(u) : 0;
-    return c < cells_[axis] ? c : cells_[axis] - 1;
+    if (!(u > 0)) return 0;  // NaN too
+    return u < cells_[axis] ? static_cast<int>(u) : cells_[axis] - 1;
   }
   /// Whether a position lies in the box (its walls included).
   bool contains(const Vec<Dim>& x) const noexcept {
