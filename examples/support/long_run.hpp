@@ -101,7 +101,7 @@ class StepCourse {
     ++steps_;
     longest_ = std::max(longest_, step.dt);
     // Steps cut short by a time of the output are not the scheme's own.
-    if (step.limit != vadose::StepLimit::user) shortest_ = std::min(shortest_, step.dt);
+    if (step.limit != vadose::StepLimit::end) shortest_ = std::min(shortest_, step.dt);
     if (!(step.solve.inertia > 1)) return;
     ++slow_steps_;
     slow_time_ += step.dt;
