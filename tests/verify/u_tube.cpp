@@ -15,10 +15,11 @@ TEST_CASE("known miss: U-tube, two ponds level out through saturated soil, 10 ce
   const verify::UTubePonds ponds;
   verify::check_outcome(ponds, verify::run<Quiet>(ponds, {.cells = 10}), 0.07);
 }
-// The cells at its ends empty and fill, which shakes the water: its amplitude is that of a cell.
+// Its amplitude is half a cell here. In finer cells those at its ends empty and fill, which shakes the water:
+// with 40 cells one in eight runs that differ by round-off loses the swing.
 TEST_CASE("known miss: U-tube, period and decay of its swing") {
   const verify::UTubeLeg leg;
-  verify::check_outcome(leg, verify::run<Quiet>(leg, {.cells = 40}), 0.1);
+  verify::check_outcome(leg, verify::run<Quiet>(leg, {.cells = 10}), 0.05);
 }
 TEST_SUITE("long") {
   TEST_CASE("U-tube: two ponds level out through saturated soil, 40 cells") {
