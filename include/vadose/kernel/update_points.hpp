@@ -377,7 +377,8 @@ Real find_share(const State<M>& state, const Cell<State<M>::dim>& cell, Record& 
 
 /// How near a point of free water is to the face to soil of its cell: 1 at the face, next to nothing from
 /// half a cell on. (What soil takes leaves the points at its face, what it gives goes to them: spread over
-/// the cell it would lift the water that rises out of the ground.)
+/// the cell it would lift the water that rises out of the ground. With 0.02 for what is far, a point that is
+/// still small gets next to nothing beside the full ones above it, and the swing of a U-tube is lost.)
 template <int Dim>
 Real nearness(const Cell<Dim>& cell, const Lanes (&x)[Dim], int l, Real over_cell_size) noexcept {
   constexpr Real far = 0.002;

@@ -31,7 +31,8 @@ struct SpringPlace {
 };
 
 /// The point that leaves half of its water at a place: the heaviest of the cell, if all have left the face and
-/// it is heavy, or if all are about to leave the cell. nullptr: none.
+/// it is heavy, or if all are about to leave the cell. nullptr: none. (Measured on U-tubes: at 1.5 instead of
+/// 1.1 full points the cell may run empty before a point is heavy enough.)
 template <class M>
 const FreePoint* spring_point(const State<M>& state, std::span<const FreePoint> points,
                               const SpringPlace<State<M>::dim>& place) {
