@@ -57,7 +57,7 @@ struct Choices : example::RunChoices {
 
   Choices()
       : RunChoices{.scheme = example::Scheme::explicit_steps,
-                   .inertia = 5e-3,
+                   .inertia = 1e-3,
                    .end_time = 8,
                    .bulk_modulus = 2.2e7,
                    .frames = 16,

@@ -14,6 +14,7 @@
 #include <utility>
 
 #include <vadose/core/error.hpp>
+#include <vadose/kernel/state.hpp>
 #include <vadose/policy/law/drucker_prager.hpp>
 
 namespace example {
@@ -26,8 +27,9 @@ enum class Scheme { explicit_steps, semi_implicit };
 /// What the long examples let their users choose alike; each has defaults of its own.
 struct RunChoices {
   Scheme scheme = Scheme::semi_implicit;
-  bool quasi_static = true;      ///< slow periods in long steps; semi-implicit runs only
-  Real inertia = 1e-4;           ///< see vadose::QuasiStatic [-]
+  bool quasi_static = true;  ///< slow periods in long steps; semi-implicit runs only
+  Real inertia = 1e-4;       ///< see vadose::QuasiStatic [-]
+  vadose::SlowSkeleton slow_skeleton = vadose::SlowSkeleton::implicit;
   Real saturation_step = 0.002;  ///< change of S that a semi-implicit step aims at [-]
   bool resume = false;           ///< go on from a checkpoint
   bool check = false;            ///< a reduced run, compared with bounds
@@ -117,8 +119,12 @@ class Flags {
   }
   /// Those of runs that are always semi-implicit and quasi-static.
   Flags& quasi_static(RunChoices& c) {
+    using vadose::SlowSkeleton;
     return number("--inertia", "I", c.inertia,
-                  "inertia over weights and loads that slow steps aim at")
+                  "forces out of balance over weights and loads that slow steps aim at")
+        .choice<SlowSkeleton>(
+            "--slow-skeleton", c.slow_skeleton,
+            {{"implicit", SlowSkeleton::implicit}, {"heavy", SlowSkeleton::heavy}})
         .number("--saturation-step", "D", c.saturation_step,
                 "change of S that a semi-implicit step aims at");
   }

@@ -59,7 +59,8 @@ vadose::SolverOptions<M> solver_options(const RunChoices& c) {
           .transfer = {.pic_rate = c.pic_rate},
           .threads = c.threads,
           .saturation_step = c.saturation_step,
-          .quasi_static = {.on = implicit && c.quasi_static, .inertia = c.inertia}};
+          .quasi_static = {
+              .on = implicit && c.quasi_static, .skeleton = c.slow_skeleton, .inertia = c.inertia}};
 }
 
 /// Largest number that the law keeps on a solid point, e.g. its plastic shear strain.
@@ -102,7 +103,10 @@ class StepCourse {
     longest_ = std::max(longest_, step.dt);
     // Steps cut short by a time of the output are not the scheme's own.
     if (step.limit != vadose::StepLimit::end) shortest_ = std::min(shortest_, step.dt);
-    if (!(step.solve.inertia > 1)) return;
+    newton_ += step.solve.newton;
+    linear_ += step.solve.linear;
+    retries_ += step.solve.retries;
+    if (!step.solve.skeleton && !(step.solve.inertia > 1)) return;
     ++slow_steps_;
     slow_time_ += step.dt;
   }
@@ -112,13 +116,18 @@ class StepCourse {
     if (slow_steps_ > 0)
       std::fprintf(out, "; %lld of %lld quasi-static, %.4g s together",
                    static_cast<long long>(slow_steps_), static_cast<long long>(steps_), slow_time_);
+    if (newton_ > 0)
+      std::fprintf(
+          out, "\n  solver   %.3g Newton and %.3g linear iterations per step, %lld retries",
+          static_cast<Real>(newton_) / static_cast<Real>(steps_),
+          static_cast<Real>(linear_) / static_cast<Real>(steps_), static_cast<long long>(retries_));
     rusage usage = {};
     getrusage(RUSAGE_SELF, &usage);
     std::fprintf(out, "\n  memory   %.0f MB at most\n", static_cast<Real>(usage.ru_maxrss) / 1024);
   }
 
  private:
-  std::int64_t steps_ = 0, slow_steps_ = 0;
+  std::int64_t steps_ = 0, slow_steps_ = 0, newton_ = 0, linear_ = 0, retries_ = 0;
   Real longest_ = 0, shortest_ = 1e30, slow_time_ = 0;
 };
 

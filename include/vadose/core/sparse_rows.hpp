@@ -147,6 +147,16 @@ class SparseSolver {
   /// x = A^-1 b to |b - A x| <= tolerance |b|.
   Outcome solve(const SparseRows& a, const std::vector<Real>& b, std::vector<Real>& x,
                 Real tolerance, int max_iterations, int threads) {
+    return solve(a, b, x, tolerance, max_iterations, threads,
+                 [&](const std::vector<Real>& y, std::vector<Real>& product) {
+                   multiply(a, y, product, threads);
+                 });
+  }
+  /// The same for another matrix, given by `multiply(y, product)`, close enough to `a` that its
+  /// factorisation serves.
+  template <class Multiply>
+  Outcome solve(const SparseRows& a, const std::vector<Real>& b, std::vector<Real>& x,
+                Real tolerance, int max_iterations, int threads, Multiply&& product_of) {
     const auto n = static_cast<std::size_t>(a.rows());
     lu_.factor(a, threads);
     for (auto* v : {&p_, &v_, &y_, &z_, &t_}) v->assign(n, 0);
@@ -172,7 +182,7 @@ class SparseSolver {
       rho = next;
       each(n, threads, [&](std::size_t i) { p_[i] = r_[i] + beta * (p_[i] - omega * v_[i]); });
       lu_.solve(a, p_, y_, threads);
-      multiply(a, y_, v_, threads);
+      product_of(y_, v_);
       alpha = rho / dot(shadow_, v_, threads);
       each(n, threads, [&](std::size_t i) {
         r_[i] -= alpha * v_[i];
@@ -181,7 +191,7 @@ class SparseSolver {
       out.residual = std::sqrt(dot(r_, r_, threads)) / scale;
       if (!(out.residual > tolerance)) break;
       lu_.solve(a, r_, z_, threads);
-      multiply(a, z_, t_, threads);
+      product_of(z_, t_);
       omega = dot(t_, r_, threads) / dot(t_, t_, threads);
       each(n, threads, [&](std::size_t i) {
         x[i] += omega * z_[i];
@@ -191,6 +201,18 @@ class SparseSolver {
       if (!(out.residual > tolerance)) break;
     }
     return out;
+  }
+
+  /// y = A x.
+  static void multiply(const SparseRows& a, const std::vector<Real>& x, std::vector<Real>& y,
+                       int threads) {
+    each(static_cast<std::size_t>(a.rows()), threads, [&](std::size_t i) {
+      const int row = static_cast<int>(i);
+      Real sum = 0;
+      for (int at = a.begin(row); at < a.end(row); ++at)
+        sum += a.value(at) * x[static_cast<std::size_t>(a.column(at))];
+      y[i] = sum;
+    });
   }
 
  private:
@@ -214,17 +236,6 @@ class SparseSolver {
     for (const Real part : parts_) sum += part;
     return sum;
   }
-  static void multiply(const SparseRows& a, const std::vector<Real>& x, std::vector<Real>& y,
-                       int threads) {
-    each(static_cast<std::size_t>(a.rows()), threads, [&](std::size_t i) {
-      const int row = static_cast<int>(i);
-      Real sum = 0;
-      for (int at = a.begin(row); at < a.end(row); ++at)
-        sum += a.value(at) * x[static_cast<std::size_t>(a.column(at))];
-      y[i] = sum;
-    });
-  }
-
   IncompleteLu lu_;
   std::vector<Real> r_, shadow_, p_, v_, y_, z_, t_, parts_;
 };

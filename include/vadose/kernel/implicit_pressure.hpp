@@ -12,6 +12,7 @@
 #include <vector>
 
 #include <vadose/kernel/exchange.hpp>
+#include <vadose/kernel/implicit_skeleton.hpp>
 
 namespace vadose::kernel {
 
@@ -281,6 +282,58 @@ void gradient_changes(const State<M>& state, const CellView<M>& view, Real (&for
     for (int d = 0; d < dim; ++d) force[d] -= reference[d] / r.references * r.gradient[d];
 }
 
+/// Changes of the forces on both phases of a node by the trial pressures.
+template <class M>
+void force_changes(const State<M>& state, const CellView<M>& view,
+                   Real (&liquid_force)[State<M>::dim], Real (&solid_force)[State<M>::dim]) {
+  constexpr int dim = State<M>::dim;
+  const auto& r = state.system.response[static_cast<std::size_t>(view.entry())];
+  Real force[dim], bishop[dim];
+  gradient_changes(state, view, force, bishop);
+  for (int d = 0; d < dim; ++d) {
+    liquid_force[d] = r.liquid_part * force[d];
+    solid_force[d] = r.bishop_part * bishop[d] - r.pore_part[d] * force[d];
+  }
+}
+
+/// Impulses by the changes of pressure at the nodes of the skeleton, as the system takes them.
+template <class M>
+void find_impulses(State<M>& state) {
+  constexpr int dim = State<M>::dim;
+  auto& skeleton = state.system.skeleton;
+  for_cells(state.grid, state.options.threads,
+            [&](std::int32_t e, const Index<dim>& local, int slot, int) {
+              const auto& node = skeleton.node[static_cast<std::size_t>(e)];
+              if (node.row < 0) return;
+              Real liquid[dim], solid[dim];
+              force_changes(state, CellView<M>(state, local, slot), liquid, solid);
+              for (int d = 0; d < dim; ++d) {
+                Real force = solid[d];
+                for (int j = 0; j < dim; ++j) force += node.coupling[d][j] * liquid[j];
+                skeleton.impulse[node.row * dim + d] = state.dt * force;
+              }
+            });
+}
+
+/// The answer of a node whose grains move as the system of the skeleton says.
+template <class M>
+void respond_with_skeleton(const State<M>& state, std::size_t i,
+                           const Real (&liquid_force)[State<M>::dim], Real (&liquid)[State<M>::dim],
+                           Real (&solid)[State<M>::dim]) noexcept {
+  constexpr int dim = State<M>::dim;
+  const auto& skeleton = state.system.skeleton;
+  const auto& node = skeleton.node[i];
+  const auto& r = state.system.response[i];
+  for (int d = 0; d < dim; ++d) solid[d] = skeleton.velocity[node.row * dim + d];
+  for (int d = 0; d < dim; ++d) {
+    liquid[d] = 0;
+    for (int j = 0; j < dim; ++j)
+      liquid[d] += node.liquid_mobility[d][j] * liquid_force[j] + node.coupling[d][j] * solid[j];
+    if (r.liquid_held & (1 << d)) liquid[d] = 0;
+    if (r.follows) liquid[d] = solid[d];
+  }
+}
+
 /// Velocities of one node at the trial pressures.
 template <class M>
 void respond_node(State<M>& state, const CellView<M>& view) {
@@ -289,14 +342,12 @@ void respond_node(State<M>& state, const CellView<M>& view) {
   const auto i = static_cast<std::size_t>(view.entry());
   const auto& r = state.system.response[i];
   if (!r.active) return;
-  Real force[dim], bishop[dim];
-  gradient_changes(state, view, force, bishop);
   Real liquid_force[dim], solid_force[dim], liquid[dim], solid[dim];
-  for (int d = 0; d < dim; ++d) {
-    liquid_force[d] = r.liquid_part * force[d];
-    solid_force[d] = r.bishop_part * bishop[d] - r.pore_part[d] * force[d];
-  }
-  respond(r, liquid_force, solid_force, liquid, solid);
+  force_changes(state, view, liquid_force, solid_force);
+  if (state.system.skeleton.on && state.system.skeleton.node[i].row >= 0)
+    respond_with_skeleton(state, i, liquid_force, liquid, solid);
+  else
+    respond(r, liquid_force, solid_force, liquid, solid);
   for (int d = 0; d < dim; ++d) {
     liquid[d] += r.liquid[d];
     solid[d] += r.solid[d];
@@ -323,6 +374,10 @@ void respond_node(State<M>& state, const CellView<M>& view) {
 /// Velocities of all nodes at the trial pressures.
 template <class M>
 void respond_nodes(State<M>& state) {
+  if (state.system.skeleton.on) {
+    find_impulses(state);
+    respond_skeleton(state.system.skeleton);
+  }
   for_cells(state.grid, state.options.threads,
             [&](std::int32_t, const Index<State<M>::dim>& local, int slot, int) {
               respond_node(state, CellView<M>(state, local, slot));
@@ -526,11 +581,10 @@ struct NodeAssembly {
     if constexpr (has_skeleton<M>) faces = faces_of_node(view);
   }
 
-  /// Velocities per pressure of the cell at a corner.
-  void velocity_slopes(int column, Real (&liquid)[dim], Real (&solid)[dim]) const {
+  /// Forces per pressure of the cell at a corner.
+  void force_slopes(int column, Real (&liquid_force)[dim], Real (&solid_force)[dim]) const {
     const auto& u = *own[column];
     const auto& c = state.nodes.cell[static_cast<std::size_t>(u.entry)];
-    Real liquid_force[dim], solid_force[dim];
     for (int d = 0; d < dim; ++d) {
       Real force = u.quad_slope * u.weight[column][d];
       if (response.references > 0 && c.has_reference)
@@ -539,7 +593,58 @@ struct NodeAssembly {
       solid_force[d] = response.bishop_part * u.bishop_slope * u.weight[column][d] -
                        response.pore_part[d] * force;
     }
-    respond(response, liquid_force, solid_force, liquid, solid);
+  }
+
+  /// Velocities per pressure of the cell at a corner; where the skeleton is solved for, with its grains
+  /// at rest.
+  void velocity_slopes(int column, Real (&liquid)[dim], Real (&solid)[dim]) const {
+    Real liquid_force[dim], solid_force[dim];
+    force_slopes(column, liquid_force, solid_force);
+    const SkeletonNode<dim>* node = skeleton_node();
+    if (!node) return respond(response, liquid_force, solid_force, liquid, solid);
+    for (int d = 0; d < dim; ++d) {
+      liquid[d] = solid[d] = 0;
+      if (response.follows || (response.liquid_held & (1 << d))) continue;
+      for (int j = 0; j < dim; ++j) liquid[d] += node->liquid_mobility[d][j] * liquid_force[j];
+    }
+  }
+
+  /// The node in the system of the skeleton, null where none is solved.
+  const SkeletonNode<dim>* skeleton_node() const {
+    if (!state.system.skeleton.on) return nullptr;
+    const auto& node = state.system.skeleton.node[static_cast<std::size_t>(view.entry())];
+    return node.row < 0 ? nullptr : &node;
+  }
+
+  /// Impulses of the skeleton's node per pressure of the cells around, and what their balances take from
+  /// its velocity.
+  void couple(SkeletonNode<dim>& node) {
+    for (int c = 0; c < corners; ++c) {
+      for (int d = 0; d < dim; ++d) node.force[c][d] = node.rate[c][d] = 0;
+      if (!own[c]) continue;
+      Real liquid[dim], solid[dim];
+      force_slopes(c, liquid, solid);
+      for (int d = 0; d < dim; ++d) {
+        node.force[c][d] = state.dt * solid[d];
+        for (int j = 0; j < dim; ++j)
+          node.force[c][d] += state.dt * node.coupling[d][j] * liquid[j];
+      }
+    }
+    for (int axis = 0; axis < dim; ++axis) {
+      if (node.held & (1 << axis)) continue;
+      Real liquid[dim], solid[dim] = {};
+      solid[axis] = 1;
+      for (int d = 0; d < dim; ++d) {
+        liquid[d] = response.liquid_held & (1 << d) ? 0 : node.coupling[d][axis];
+        if (response.follows) liquid[d] = solid[d];
+      }
+      block = {};
+      for (int row = 0; row < corners; ++row)
+        if (own[row]) add_rates(row, 0, liquid, solid);
+      if constexpr (has_skeleton<M>) add_fluxes(0, liquid, solid);
+      for (int c = 0; c < corners; ++c) node.rate[c][axis] = block.value[c][0];
+    }
+    block = {};
   }
 
   /// Balance of a cell through the volume rates at its quadrature point.
@@ -694,7 +799,10 @@ void assemble_matrix(State<M>& state) {
   for_cells(state.grid, state.options.threads,
             [&](std::int32_t e, const Index<dim>& local, int slot, int) {
               const CellView<M> view(state, local, slot);
-              NodeAssembly<M>(state, view, system.blocks[static_cast<std::size_t>(e)]).run();
+              NodeAssembly<M> assembly(state, view, system.blocks[static_cast<std::size_t>(e)]);
+              if (assembly.skeleton_node())
+                assembly.couple(system.skeleton.node[static_cast<std::size_t>(e)]);
+              assembly.run();
             });
   for_unknowns(state, [&](std::size_t i, auto& u, auto& cell) {
     const int row = static_cast<int>(i);
@@ -719,6 +827,75 @@ void assemble_matrix(State<M>& state) {
       });
     }
   });
+}
+
+/// Adds what the balances take of pressures x through the motion of the skeleton to y.
+template <class M>
+void add_skeleton_product(State<M>& state, const std::vector<Real>& x, std::vector<Real>& y) {
+  constexpr int dim = State<M>::dim;
+  auto& skeleton = state.system.skeleton;
+  for_cells(state.grid, state.options.threads,
+            [&](std::int32_t e, const Index<dim>& local, int slot, int) {
+              const auto& node = skeleton.node[static_cast<std::size_t>(e)];
+              if (node.row < 0) return;
+              Real sum[dim] = {};
+              for_cells_around(CellView<M>(state, local, slot), [&](int corner, std::int32_t c) {
+                const int column = row_at(state, c);
+                if (column < 0) return;
+                for (int d = 0; d < dim; ++d)
+                  sum[d] += node.force[corner][d] * x[static_cast<std::size_t>(column)];
+              });
+              for (int d = 0; d < dim; ++d) skeleton.impulse[node.row * dim + d] = sum[d];
+            });
+  respond_skeleton(skeleton);
+  for_unknowns(state, [&](std::size_t row, auto& u, auto&) {
+    if (u.held) return;
+    for_nodes_of(view_of(state, u.entry), [&](std::int32_t e, int corner) {
+      if (e == state.grid.outside()) return;
+      const auto& node = skeleton.node[static_cast<std::size_t>(e)];
+      if (node.row < 0) return;
+      for (int d = 0; d < dim; ++d)
+        y[row] += node.rate[corner][d] * skeleton.velocity[node.row * dim + d];
+    });
+  });
+}
+
+/// What cells give way by the stiffness of their own soil alone, added to the matrix: with it its
+/// factorisation stands for the whole one.
+template <class M>
+void add_own_compliance(State<M>& state) {
+  auto& system = state.system;
+  system.compliance.assign(system.unknowns.size(), 0);
+  for_unknowns(state, [&](std::size_t i, auto& u, auto& cell) {
+    if (u.held || u.free) return;
+    system.compliance[i] = u.squeeze * u.bishop_slope / state.soils[cell.material].p_wave_modulus;
+    system.matrix.add(static_cast<int>(i), static_cast<int>(i), system.compliance[i]);
+  });
+}
+
+/// Changes of pressure from residuals; returns iterations.
+template <class M>
+int solve_linear(State<M>& state) {
+  constexpr Real tolerance = 1e-8;
+  constexpr int most = 1000;
+  auto& system = state.system;
+  const int threads = state.options.threads;
+  if constexpr (is_deformable<M>) {
+    if (system.skeleton.on) {
+      add_own_compliance(state);
+      return system.solver
+          .solve(system.matrix, system.residual, system.change, tolerance, most, threads,
+                 [&](const std::vector<Real>& x, std::vector<Real>& y) {
+                   SparseSolver::multiply(system.matrix, x, y, threads);
+                   for (std::size_t i = 0; i < x.size(); ++i) y[i] -= system.compliance[i] * x[i];
+                   add_skeleton_product(state, x, y);
+                 })
+          .iterations;
+    }
+  }
+  return system.solver
+      .solve(system.matrix, system.residual, system.change, tolerance, most, threads)
+      .iterations;
 }
 
 /// A step of Newton's method on one pressure. Storage changes a thousandfold where p crosses 0, and
@@ -796,14 +973,19 @@ Real saturation_change(State<M>& state) {
 }
 
 /// DEVIATION: [Zhan] steps through slow periods by dynamics too.
-/// Inertia of the grains in this step, over their own: 1, but in quasi-static steps as much as lets waves in
-/// the skeleton stand the step, (dt / dt_wave)^2.
+/// Chooses how the skeleton stands a step longer than that of its waves: its motion is solved for, or the
+/// grains have more inertia, (dt / dt_wave)^2 of their own.
 template <class M>
-void raise_inertia(State<M>& state) noexcept {
+void choose_skeleton(State<M>& state) {
   auto& system = state.system;
   const Real ratio = state.dt / system.wave_dt;
-  system.report.inertia =
-      state.options.quasi_static.on && !state.frozen ? max(1.0, ratio * ratio) : 1;
+  const bool slow = state.options.quasi_static.on && !state.frozen && ratio > 1;
+  const bool solves = slow && state.options.quasi_static.skeleton == SlowSkeleton::implicit;
+  system.report.inertia = slow && !solves ? ratio * ratio : 1;
+  if constexpr (is_deformable<M>) {
+    system.report.skeleton = system.skeleton.on = solves;
+    if (solves) system.skeleton.node.assign(state.grid.size(), {});
+  }
 }
 
 /// All weights and loads, as lengths [N].
@@ -813,6 +995,21 @@ Real weights_and_loads(const State<M>& state, Real mass) noexcept {
   for (const auto& load : state.loads)
     sum += load.force.norm() * std::fabs(state.factor_values[load.factor]);
   return sum;
+}
+
+/// Measures the share of forces out of balance in the weights and loads, where the skeleton is solved for.
+template <class M>
+void find_unbalanced_share(State<M>& state) {
+  const auto& system = state.system;
+  Real mass = 0, unbalanced = 0;
+  for (std::size_t i = 0; i < system.skeleton.node.size(); ++i) {
+    const auto& node = system.skeleton.node[i];
+    if (!(node.inertia[0][0] > 0)) continue;
+    mass += state.nodes.solid_in[i][lane::mass] + state.nodes.liquid_in[i][lane::mass];
+    unbalanced += node.unbalanced;
+  }
+  const Real forces = weights_and_loads(state, mass);
+  state.system.report.inertia_share = forces > 0 ? unbalanced / forces : 1;
 }
 
 /// Measures the share of inertia in the weights and loads in a step that may be quasi-static.
@@ -851,7 +1048,10 @@ template <class M>
 void remember_inertia(State<M>& state) noexcept {
   constexpr Real keeps = 0.97;  // of the last value, per step
   auto& share = state.system.inertia_share;
-  share = max(state.system.report.inertia_share, keeps * share);
+  if (state.system.report.skeleton)  // damps waves by itself
+    share = state.system.report.inertia_share;
+  else
+    share = max(state.system.report.inertia_share, keeps * share);
 }
 
 /// What the length of a quasi-static step is to be multiplied by to bring a share of inertia to what the
@@ -911,7 +1111,12 @@ bool solve_pressures(State<M>& state) {
   auto& system = state.system;
   SolveReport& report = system.report;
   list_unknowns(state);
-  if (system.unknowns.empty()) return true;
+  if constexpr (is_deformable<M>)
+    if (system.skeleton.on && !predict_skeleton(state)) return false;
+  if (system.unknowns.empty()) {
+    if (system.skeleton.on) respond_nodes(state);
+    return true;
+  }
   update_pattern(state);
   system.blocks.resize(state.grid.size());
   system.start_gradient.resize(state.nodes.face.size());
@@ -926,9 +1131,7 @@ bool solve_pressures(State<M>& state) {
     if (report.residual <= balance_limit && change <= 1) break;
     if (iteration == max_newton || !(report.residual < 1e100)) break;
     assemble_matrix(state);
-    const auto outcome = system.solver.solve(system.matrix, system.residual, system.change, 1e-8,
-                                             1000, state.options.threads);
-    report.linear += outcome.iterations;
+    report.linear += solve_linear(state);
     change = change_pressures(state, iteration);
   }
   return report.residual <= balance_limit;

@@ -6,6 +6,8 @@
 
 #include <algorithm>
 
+#include <Eigen/LU>
+
 #include <vadose/kernel/faces.hpp>
 #include <vadose/kernel/map_to_grid.hpp>
 
@@ -645,6 +647,74 @@ void find_constraints(const State<M>& state, const NodeSums<State<M>::dim>& sums
   if (axis >= 0 && node.solid[axis] == 0) r.solid_held |= static_cast<std::uint8_t>(1 << axis);
 }
 
+/// Coulomb friction at a wall, where the skeleton is solved for: grains that press on it stick, or slide
+/// against what it takes.
+template <int Dim>
+void apply_friction(const SpecialNode<Dim>& wall, SkeletonNode<Dim>& node) {
+  const int n = wall.friction_axis;
+  if (n < 0) return;
+  const Real into = (wall.friction_side == 0 ? -1 : 1) * node.impulse[n];
+  if (into <= 0) return;
+  node.held |= static_cast<std::uint8_t>(1 << n);
+  Real along = 0;
+  for (int d = 0; d < Dim; ++d)
+    if (d != n) along += node.impulse[d] * node.impulse[d];
+  along = std::sqrt(along);
+  const Real keep = along > 0 ? max(0.0, 1 - wall.friction * into / along) : 0;
+  for (int d = 0; d < Dim; ++d) {
+    if (d == n) continue;
+    node.impulse[d] *= keep;
+    if (!(keep > 0)) node.held |= static_cast<std::uint8_t>(1 << d);
+  }
+}
+
+/// What the balance of the skeleton needs of a node; `before`: velocities before the step.
+template <class M>
+void record_skeleton(State<M>& state, std::size_t i, const Real (&prescribed)[State<M>::dim],
+                     const NodeMotion<State<M>::dim>& before,
+                     const NodeMotion<State<M>::dim>& node) {
+  constexpr int dim = State<M>::dim;
+  constexpr Real tie = 1e9;  // drag along a tied normal, in masses of the liquid
+  using Matrix = Eigen::Matrix<Real, dim, dim>;
+  auto& r = state.system.response[i];
+  SkeletonNode<dim> s;
+  const Real a = node.liquid_mass;
+  Matrix coupling = Matrix::Zero();
+  if (a > 0 && node.solid_mass > 0) {
+    Matrix drag = Matrix::Zero();
+    for (int d = 0; d < dim; ++d) {
+      drag(d, d) = node.drag[d];
+      for (int e = 0; e < dim; ++e) drag(d, e) += tie * a * r.normal[d] * r.normal[e];
+    }
+    coupling = (a * Matrix::Identity() + drag).inverse() * drag;
+  }
+  Real liquid[dim];
+  for (int d = 0; d < dim; ++d) liquid[d] = a * before.liquid[d] + state.dt * node.liquid_force[d];
+  for (int d = 0; d < dim; ++d) {
+    s.impulse[d] = node.solid_mass * before.solid[d] + state.dt * node.solid_force[d];
+    for (int e = 0; e < dim; ++e) {
+      const Real own = d == e ? 1 : 0;
+      s.coupling[d][e] = coupling(d, e);
+      s.inertia[d][e] = own * node.solid_mass + a * coupling(d, e);
+      s.impulse[d] += coupling(d, e) * liquid[e];
+      if (!(a > 0)) continue;
+      s.liquid_mobility[d][e] = state.dt * (own - coupling(d, e)) / a;
+      s.liquid_velocity[d] += (own - coupling(d, e)) / a * liquid[e];
+    }
+    if (is_finite(prescribed[d]) || (r.solid_held >> d & 1)) {
+      s.held |= static_cast<std::uint8_t>(1 << d);
+      s.given[d] = node.solid[d];
+    }
+  }
+  if (state.nodes.node_flags[i] & node_flag::special)
+    apply_friction(special_node(state, static_cast<std::int32_t>(i)), s);
+  r.solid_held = s.held;
+  for (int d = 0; d < dim; ++d)
+    if (!(s.held >> d & 1)) s.unbalanced += power<2>(node.solid_force[d] + node.liquid_force[d]);
+  s.unbalanced = std::sqrt(s.unbalanced);
+  state.system.skeleton.node[i] = s;
+}
+
 /// Keeps how a node answers to forces, for an implicit solution.
 template <class M>
 void record_response(State<M>& state, std::size_t i, const NodeSums<State<M>::dim>& sums,
@@ -670,13 +740,15 @@ void record_response(State<M>& state, std::size_t i, const NodeSums<State<M>::di
   find_force_parts(sums, skeleton_volume, state.water.density, node, r);
   find_constraints(state, sums, entry, flags, node, r);
   state.system.response[i] = r;
+  if constexpr (is_deformable<M> && has_liquid<M>)
+    if (state.system.skeleton.on) record_skeleton(state, i, prescribed, before, node);
 }
 
 /// Local damping of this step: in quasi-static periods more, less and less as inertia begins to matter.
 template <bool Recorded, class M>
 Real damping_now(const State<M>& state) noexcept {
   const auto& choice = state.options.quasi_static;
-  if (!Recorded || !choice.on) return state.options.damping;
+  if (!Recorded || !choice.on || state.system.skeleton.on) return state.options.damping;
   const Real still = max(0.0, 1 - state.system.inertia_share / choice.dynamic);
   return max(state.options.damping, still * choice.damping);
 }

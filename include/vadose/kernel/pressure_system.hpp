@@ -9,6 +9,7 @@
 #include <vector>
 
 #include <vadose/core/sparse_rows.hpp>
+#include <vadose/kernel/skeleton_system.hpp>
 #include <vadose/kernel/step_limit.hpp>
 
 namespace vadose {
@@ -72,8 +73,11 @@ struct SolveReport {
   int retries = 0;    ///< attempts with a larger step that were given up
   Real residual = 0;  ///< largest water volume left unbalanced in a cell over its pore volume [-]
   Real saturation_change = 0;  ///< largest change of saturation in a cell [-]
-  Real inertia = 1;        ///< factor of the inertia of the grains, 1 but in quasi-static steps [-]
-  Real inertia_share = 0;  ///< of inertia in the weights and loads, in quasi-static steps [-]
+  bool skeleton = false;       ///< the motion of the skeleton was solved for too
+  Real inertia = 1;  ///< factor of the inertia of the grains, 1 but in quasi-static steps [-]
+  /// Of inertia in the weights and loads, in quasi-static runs; where the skeleton was solved for, of the
+  /// forces that were out of balance before the step [-].
+  Real inertia_share = 0;
 };
 
 /// Derivatives of the flux per area at a face of the ground or of a wall.
@@ -104,8 +108,10 @@ struct PressureSystem {
   std::vector<SurfaceSlope> surface_slope;          ///< of faces of the ground and of walls
   std::vector<NodeBlock> blocks;                    ///< per node
   std::vector<Real> residual, change, worst;
+  std::vector<Real> compliance;  ///< of the soil of a cell by itself, added to the matrix [m3/Pa]
   SparseRows matrix;
   SparseSolver solver;
+  SkeletonSystem<Dim> skeleton;  ///< of steps longer than those of waves in it
 };
 
 }  // namespace vadose

@@ -48,9 +48,13 @@ struct Soil {
   Material<M> material;                       ///< all shared numbers handed on
   law::PreparedOf<typename M::Skeleton> law;  ///< with derived numbers
   Real p_wave_modulus = 0;                    ///< of the initial state [Pa]
+  Real shear_modulus = 0;                     ///< of the initial state [Pa]
   Real pressure_floor = -1e9;                 ///< lowest pressure sought [Pa]
   /// Mean conductivity between two pressures; only in unsaturated models.
   std::optional<typename detail::KirchhoffOf<M>::type> kirchhoff;
+
+  /// K = E_c - 4 G / 3 [Pa].
+  Real bulk_modulus() const noexcept { return p_wave_modulus - 4 * shear_modulus / 3; }
 };
 template <class M>
 struct Soil<M, false> {};
@@ -151,13 +155,21 @@ struct Resampling {
   }
 };
 
-/// Quasi-static periods of a semi-implicit run: its steps are not bound by waves in the skeleton, whose grains
-/// resist acceleration with as much more inertia as that takes, and damping brings it to rest. Where inertia
-/// comes to more than a small part of the weights and loads, steps shorten until, at the step of the waves,
-/// nothing is added, and damping fades: the motion is then dynamic.
+/// What lets quasi-static steps be longer than those of waves in the skeleton.
+enum class SlowSkeleton : std::uint8_t {
+  implicit,  ///< its motion is solved for, with the elastic stiffness of the points
+  heavy,     ///< its grains resist acceleration with as much more inertia as that takes
+};
+
+/// Quasi-static periods of a semi-implicit run: its steps are not bound by waves in the skeleton, and damping
+/// brings it to rest. Where the forces out of balance (with heavy grains: inertia) come to more than a small
+/// part of the weights and loads, steps shorten until, at the step of the waves, the motion is dynamic, and
+/// damping fades.
 struct QuasiStatic {
-  bool on = false;      ///< off: every step is dynamic
-  Real inertia = 1e-4;  ///< inertia over weights and loads that a step aims at [-], in (0, 0.1]
+  bool on = false;                                 ///< off: every step is dynamic
+  SlowSkeleton skeleton = SlowSkeleton::implicit;  ///< see there
+  /// Forces out of balance, or inertia, over weights and loads that a step aims at [-], in (0, 0.1]
+  Real inertia = 1e-4;
   /// The same from which on only SolverOptions::damping damps [-], above `inertia`.
   Real dynamic = 1e-2;
   Real damping = 0.5;  ///< local damping of the skeleton at rest [-], in [0, 1)

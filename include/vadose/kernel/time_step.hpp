@@ -166,10 +166,22 @@ StableStep gravity_wave_step(const State<M>& state) {
   return step;
 }
 
+/// A solution for the motion of the skeleton costs some steps of its waves and has to save more.
+inline constexpr Real worthwhile = 3;
+
+/// A step, or that of waves in the skeleton where a solution for its motion would not be worth its price.
+template <class M>
+Real worthwhile_step(const State<M>& state, Real dt) noexcept {
+  const auto& choice = state.options.quasi_static;
+  const Real wave = state.system.wave_dt;
+  const bool solves = choice.on && choice.skeleton == SlowSkeleton::implicit;
+  return solves && dt > wave && dt < worthwhile * wave ? wave : dt;
+}
+
 /// Largest step with implicit pressures: neither the compression of water nor the drag counts. Where
 /// nothing limits the first step, in soil that does not move, it is the explicit one; the control of the
 /// error lets those that follow grow. A quasi-static step is not bound by waves in the skeleton: see
-/// raise_inertia.
+/// choose_skeleton.
 template <class M>
 StableStep implicit_step(State<M>& state) {
   StableStep step = skeleton_step(state);
@@ -186,7 +198,11 @@ StableStep implicit_step(State<M>& state) {
   }
   const StableStep waves = gravity_wave_step(state);
   step.take(state.options.courant * waves.dt, waves.limit);
-  if (goes_on) step.take(state.system.next_dt, state.system.next_limit);
+  if (goes_on) {
+    const Real next = worthwhile_step(state, state.system.next_dt);
+    const bool shortened = next < state.system.next_dt;
+    step.take(next, shortened ? StepLimit::skeleton : state.system.next_limit);
+  }
   if (step.limit == StepLimit::none)
     step.take(state.options.courant * wet_step(state).dt, StepLimit::accuracy);
   return step;

@@ -112,9 +112,10 @@ void prepare_soils(State<M>& state, const Scene<M>& scene) {
       check::fail("number of soils", static_cast<Real>(scene.materials().size()), "[0, 8]", "-");
     for (std::size_t i = 0; i < scene.materials().size(); ++i) {
       const Material<M> m = scene.material(static_cast<int>(i));
-      Soil<M> soil{m, law::prepared(m.skeleton), 0, -1e9, std::nullopt};
+      Soil<M> soil{.material = m, .law = law::prepared(m.skeleton), .kirchhoff = std::nullopt};
       const auto numbers = law::initial_state(m.skeleton);
       soil.p_wave_modulus = law::p_wave_modulus(m.skeleton, numbers.data());
+      soil.shear_modulus = law::shear_modulus(m.skeleton, numbers.data());
       if constexpr (is_unsaturated<M>) {
         const Real residual = swrc::residual_saturation(m.retention);
         soil.pressure_floor = -std::min(

@@ -33,7 +33,11 @@ struct StepReport {
         n += std::snprintf(buffer + n, sizeof buffer - static_cast<std::size_t>(n),
                            ", %d Newton and %d linear iterations, residual %.2g, %d retries",
                            solve.newton, solve.linear, solve.residual, solve.retries);
-      if (solve.inertia > 1)
+      if (solve.skeleton)
+        std::snprintf(buffer + n, sizeof buffer - static_cast<std::size_t>(n),
+                      ", skeleton solved for, %.2g of weights and loads out of balance",
+                      solve.inertia_share);
+      else if (solve.inertia > 1)
         std::snprintf(buffer + n, sizeof buffer - static_cast<std::size_t>(n),
                       ", inertia times %.3g, %.2g of weights and loads", solve.inertia,
                       solve.inertia_share);

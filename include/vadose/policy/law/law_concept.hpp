@@ -17,7 +17,8 @@
 ///   that limits the time step;
 /// - `void validate() const`, which throws SetupError through vadose::check.
 ///
-/// Optional: `static constexpr bool scalar_only = true` (its update is a template but holds
+/// Optional: `shear_modulus(state)`, the elastic G [Pa] that an implicit skeleton takes;
+/// `static constexpr bool scalar_only = true` (its update is a template but holds
 /// ordinary branches), `outputs()` (numbers of the state that go to files), `initial_state()`
 /// (where defaults of State are not enough), `prepared()` (derived numbers computed once).
 
@@ -205,6 +206,19 @@ std::array<Real, static_cast<std::size_t>(state_size<L>)> initial_state(const L&
 template <HasModulus L>
 Real p_wave_modulus(const L& law, const Real* numbers) noexcept {
   return law.p_wave_modulus(load_state<L, Real>(numbers));
+}
+
+/// Elastic shear modulus G [Pa] of a point from its stored numbers: `law.shear_modulus(state)` where L has
+/// one, else 0.3 E_c, which lies within a factor of two of the stiffness of any Poisson's ratio from 0 to
+/// 0.5: an implicit skeleton is stable with it.
+template <HasModulus L>
+Real shear_modulus(const L& law, const Real* numbers) noexcept {
+  if constexpr (requires(const StateOf<L, Real>& s) {
+                  { law.shear_modulus(s) } -> std::convertible_to<Real>;
+                })
+    return law.shear_modulus(load_state<L, Real>(numbers));
+  else
+    return 0.3 * p_wave_modulus(law, numbers);
 }
 
 /// The law with all numbers derived from its parameters: `law.prepared()` where L has one, else

@@ -37,6 +37,9 @@ struct LinearElastic {
   /// The same, as the contract of a law asks for it.
   Real p_wave_modulus(const State<Real>& /*state*/) const noexcept { return p_wave_modulus(); }
 
+  /// The same, as an implicit skeleton asks for it.
+  Real shear_modulus(const State<Real>& /*state*/) const noexcept { return shear_modulus(); }
+
   /// Refuses E <= 0 and nu outside (-1, 0.5); nu = 0.5 has no finite bulk modulus.
   void validate() const {
     check::positive("young_modulus", young_modulus, "Pa");

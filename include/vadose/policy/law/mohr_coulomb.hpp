@@ -127,6 +127,10 @@ struct MohrCoulomb {
   Real p_wave_modulus(const State<Real>& /*state*/) const noexcept {
     return elastic.p_wave_modulus();
   }
+  /// Shear modulus [Pa], the elastic one.
+  Real shear_modulus(const State<Real>& /*state*/) const noexcept {
+    return elastic.shear_modulus();
+  }
 
   /// Throws SetupError on the first value outside its range.
   void validate() const {

@@ -88,6 +88,12 @@ class OneOf {
         [&](const auto& law) { return vadose::law::p_wave_modulus(law, state.data()); }, law_);
   }
 
+  /// Shear modulus of the chosen law [Pa].
+  Real shear_modulus(const State<Real>& state) const noexcept {
+    return std::visit(
+        [&](const auto& law) { return vadose::law::shear_modulus(law, state.data()); }, law_);
+  }
+
   /// Numbers a new point of the chosen law starts with.
   State<Real> initial_state() const noexcept {
     State<Real> state;

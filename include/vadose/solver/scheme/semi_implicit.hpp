@@ -60,7 +60,7 @@ struct SemiImplicit {
   template <class M>
   static void begin(State<M>& state, Real dt) {
     kernel::begin_step(state, dt);
-    kernel::raise_inertia(state);
+    kernel::choose_skeleton(state);
   }
 
   /// Velocities with the old pressures, then pressures at the end of the step and what follows from
@@ -76,6 +76,12 @@ struct SemiImplicit {
     }
     state.system.response.resize(state.grid.size());
     kernel::advance_nodes<true>(state);  // (b), (d), (e): forces, drag, walls, velocities
+    if (is_out_of_balance(state)) {
+      stable = {kernel::worthwhile_step(state, 0.3 * stable.dt), StepLimit::inertia};
+      ++state.system.report.retries;
+      state.open_impulse = open_impulse;
+      return false;
+    }
     const bool solved = kernel::solve_pressures(state);
     if (solved && control_step(state, stable)) {
       kernel::count_open_impulse(state);
@@ -96,6 +102,15 @@ struct SemiImplicit {
     return false;
   }
 
+  /// Whether forces out of balance want a much shorter step where the skeleton is solved for.
+  template <class M>
+  static bool is_out_of_balance(State<M>& state) {
+    auto& report = state.system.report;
+    if (!report.skeleton) return false;
+    kernel::find_unbalanced_share(state);
+    return kernel::inertia_factor(state, report.inertia_share) < 0.3;
+  }
+
   /// Control of the error by the change of saturation, and by inertia in quasi-static steps: the step that
   /// may come next, and whether this one stands.
   template <class M>
@@ -106,7 +121,7 @@ struct SemiImplicit {
     const Real target = state.options.saturation_step;
     Real factor = change > 0 ? min(growth, 0.9 * target / change) : growth;
     StepLimit reason = StepLimit::accuracy;
-    kernel::find_inertia_share(state);
+    if (!system.report.skeleton) kernel::find_inertia_share(state);
     kernel::remember_inertia(state);
     const bool jolts = system.report.inertia > 1 &&
                        kernel::inertia_factor(state, system.report.inertia_share) < 0.3;
@@ -120,14 +135,17 @@ struct SemiImplicit {
       // Inertia lets no step stay below that of the waves; in columns, whose water holds the soil beyond it,
       // it lets none become shorter.
       const Real back = State<M>::dim > 1 ? growth : 1;
-      const Real calm =
-          max(max(0.5, min(still, quasi_static_growth)), min(back, system.wave_dt / stable.dt));
+      const Real most = system.report.skeleton ? growth : quasi_static_growth;
+      const Real calm = max(max(0.5, min(still, most)), min(back, system.wave_dt / stable.dt));
       if (calm < factor) {
         factor = calm;
         reason = StepLimit::inertia;
       }
     }
-    const Real next = factor * stable.dt;
+    // A step of waves goes towards a longer one that is worth its price.
+    const bool waits = stable.limit == StepLimit::skeleton &&
+                       kernel::worthwhile_step(state, system.next_dt) < system.next_dt;
+    const Real next = factor * (waits ? system.next_dt : stable.dt);
     const bool cut = stable.limit == StepLimit::user || stable.limit == StepLimit::end;
     if (cut && next < system.next_dt) return true;
     system.next_dt = next;
