@@ -145,19 +145,20 @@ TEST_CASE(
       if (a != b) full.coeffRef(a, b) = full.coeffRef(b, a) = number(random);
     }
     lower = full.triangularView<Eigen::Lower>();
-    SparseCholesky::Vector b(n), x, again;
-    for (int i = 0; i < n; ++i) b[i] = number(random);
+    std::vector<Real> b(static_cast<std::size_t>(n)), x, again;
+    for (Real& value : b) value = number(random);
     REQUIRE(solver.factor(lower));
     solver.solve(b, x);
     for (int row = 0; row < n; ++row) {
-      Real left = -b[row];
-      for (int column = 0; column < n; ++column) left += full.coeff(row, column) * x[column];
+      Real left = -b[static_cast<std::size_t>(row)];
+      for (int column = 0; column < n; ++column)
+        left += full.coeff(row, column) * x[static_cast<std::size_t>(column)];
       CHECK(std::fabs(left) <= 1e-12);
     }
     SparseCholesky copy(solver);
     REQUIRE(copy.factor(lower));
     copy.solve(b, again);
-    for (int row = 0; row < n; ++row) CHECK(again[row] == x[row]);
+    CHECK(again == x);
   }
   SparseCholesky::Matrix indefinite(2, 2);
   indefinite.insert(0, 0) = 0;

@@ -2,13 +2,11 @@
 #pragma once
 
 /// \file
-/// Symmetric positive definite sparse systems by Eigen's Cholesky factorisation, or by conjugate
-/// gradients where its fill would be too large.
+/// Symmetric positive definite sparse systems by Eigen's Cholesky factorisation.
 
 #include <utility>
 #include <vector>
 
-#include <Eigen/IterativeLinearSolvers>
 #include <Eigen/SparseCholesky>
 #include <Eigen/SparseCore>
 
@@ -20,8 +18,7 @@ namespace vadose {
 /// pattern stays. A copy starts anew: nothing but time depends on what is kept.
 class SparseCholesky {
  public:
-  using Matrix = Eigen::SparseMatrix<Real>;   ///< compressed columns
-  using Vector = Eigen::Matrix<Real, -1, 1>;  ///< one value per row
+  using Matrix = Eigen::SparseMatrix<Real>;  ///< compressed columns
 
   SparseCholesky() = default;
   /// Has factored nothing yet.
@@ -40,7 +37,12 @@ class SparseCholesky {
     return cholesky_.info() == Eigen::Success;
   }
   /// x = A^-1 b.
-  void solve(const Vector& b, Vector& x) const { x = cholesky_.solve(b); }
+  void solve(const std::vector<Real>& b, std::vector<Real>& x) const {
+    using Vector = Eigen::Matrix<Real, -1, 1>;
+    const auto rows = static_cast<Eigen::Index>(b.size());
+    x.resize(b.size());
+    Eigen::Map<Vector>(x.data(), rows) = cholesky_.solve(Eigen::Map<const Vector>(b.data(), rows));
+  }
 
  private:
   bool keeps_pattern(const Matrix& a) {

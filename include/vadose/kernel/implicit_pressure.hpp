@@ -310,7 +310,7 @@ void find_impulses(State<M>& state) {
               for (int d = 0; d < dim; ++d) {
                 Real force = solid[d];
                 for (int j = 0; j < dim; ++j) force += node.coupling[d][j] * liquid[j];
-                skeleton.impulse[node.row * dim + d] = state.dt * force;
+                skeleton.impulse[row_of_axis<dim>(node, d)] = state.dt * force;
               }
             });
 }
@@ -324,7 +324,7 @@ void respond_with_skeleton(const State<M>& state, std::size_t i,
   const auto& skeleton = state.system.skeleton;
   const auto& node = skeleton.node[i];
   const auto& r = state.system.response[i];
-  for (int d = 0; d < dim; ++d) solid[d] = skeleton.velocity[node.row * dim + d];
+  for (int d = 0; d < dim; ++d) solid[d] = skeleton.velocity[row_of_axis<dim>(node, d)];
   for (int d = 0; d < dim; ++d) {
     liquid[d] = 0;
     for (int j = 0; j < dim; ++j)
@@ -376,7 +376,7 @@ template <class M>
 void respond_nodes(State<M>& state) {
   if (state.system.skeleton.on) {
     find_impulses(state);
-    respond_skeleton(state.system.skeleton);
+    respond_skeleton(state.system.skeleton, state.options.threads);
   }
   for_cells(state.grid, state.options.threads,
             [&](std::int32_t, const Index<State<M>::dim>& local, int slot, int) {
@@ -845,9 +845,9 @@ void add_skeleton_product(State<M>& state, const std::vector<Real>& x, std::vect
                 for (int d = 0; d < dim; ++d)
                   sum[d] += node.force[corner][d] * x[static_cast<std::size_t>(column)];
               });
-              for (int d = 0; d < dim; ++d) skeleton.impulse[node.row * dim + d] = sum[d];
+              for (int d = 0; d < dim; ++d) skeleton.impulse[row_of_axis<dim>(node, d)] = sum[d];
             });
-  respond_skeleton(skeleton);
+  respond_skeleton(skeleton, state.options.threads);
   for_unknowns(state, [&](std::size_t row, auto& u, auto&) {
     if (u.held) return;
     for_nodes_of(view_of(state, u.entry), [&](std::int32_t e, int corner) {
@@ -855,7 +855,7 @@ void add_skeleton_product(State<M>& state, const std::vector<Real>& x, std::vect
       const auto& node = skeleton.node[static_cast<std::size_t>(e)];
       if (node.row < 0) return;
       for (int d = 0; d < dim; ++d)
-        y[row] += node.rate[corner][d] * skeleton.velocity[node.row * dim + d];
+        y[row] += node.rate[corner][d] * skeleton.velocity[row_of_axis<dim>(node, d)];
     });
   });
 }

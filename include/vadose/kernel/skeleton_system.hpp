@@ -8,6 +8,7 @@
 #include <vector>
 
 #include <vadose/core/sparse_cholesky.hpp>
+#include <vadose/core/sparse_rows.hpp>
 
 namespace vadose {
 
@@ -45,9 +46,13 @@ struct SkeletonSystem {
   std::vector<SkeletonNode<Dim>> node;   ///< per entry
   std::vector<std::int32_t> entry;       ///< of every row
   std::vector<std::vector<Entry>> rows;  ///< stiffness [N/m], lower triangle, columns ascending
-  SparseCholesky::Matrix matrix;         ///< m + dt^2 K [kg]
-  SparseCholesky solver;
-  SparseCholesky::Vector impulse, velocity;  ///< Dim per row
+  /// Coefficients of m + dt^2 K in the lower triangle, held rows apart [kg].
+  std::vector<Eigen::Triplet<Real>> values;
+  bool factored = true;   ///< wholly; else the system is solved by iteration
+  SparseCholesky solver;  ///< in the plane, and of small systems
+  SparseRows matrix;      ///< the whole matrix of others
+  mutable SparseSolver iteration;
+  std::vector<Real> impulse, velocity;  ///< Dim per row
 };
 
 }  // namespace vadose
