@@ -199,6 +199,7 @@ void classify_cells(State<M>& state) {
               const auto i = static_cast<std::size_t>(e);
               auto& cell = nodes.cell[i];
               cell.kind = CellKind::none;
+              nodes.soil[i] = 0;
               cell.fill = 0;
               cell.raw_fill = 0;
               const CellView<M> view(state, local, slot);
@@ -209,6 +210,7 @@ void classify_cells(State<M>& state) {
               cell.fill = cell.raw_fill;
               const bool is_soil = soil > 0 && (free <= 0 || soil > 0.5 * view.volume());
               cell.kind = is_soil ? CellKind::soil : CellKind::free;
+              nodes.soil[i] = is_soil ? 1 : 0;
             });
 }
 

@@ -19,9 +19,7 @@ struct CellBatch {
   /// One number of each cell; that of the first where there are fewer.
   template <class F>
   Lanes numbers(F&& f) const noexcept {
-    alignas(64) double values[lane_count];
-    for (int l = 0; l < lane_count; ++l) values[l] = f(*cell[l < count ? l : 0]);
-    return Lanes::load(values);
+    return lanes_of([&](int l) { return f(*cell[l < count ? l : 0]); });
   }
 };
 

@@ -66,12 +66,8 @@ VADOSE_INLINE SymTensor<Lanes, State<M>::stress_size> load_stress(const State<M>
 template <class M>
 VADOSE_INLINE Lanes in_soil_cells(const State<M>& state, const CellFinder<State<M>::dim>& cells,
                                   const std::int32_t* entries) noexcept {
-  alignas(64) double soil[lane_count];
-  for (int l = 0; l < lane_count; ++l) {
-    const auto e = static_cast<std::size_t>(entries[cells.index[l]]);
-    soil[l] = state.nodes.cell[e].kind == CellKind::soil ? 1 : 0;
-  }
-  return Lanes::load(soil);
+  return lanes_of(
+      [&](int l) { return state.nodes.soil[static_cast<std::size_t>(entries[cells.index[l]])]; });
 }
 
 /// Adds one batch of solid points to a tile of nodes. With MeanByCell the mean stress goes to the

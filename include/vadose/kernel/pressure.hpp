@@ -51,10 +51,8 @@ void solve_saturated(State<M>& state) {
 template <class M>
 VADOSE_INLINE Lanes cell_rates(const State<M>& state, const CellFinder<State<M>::dim>& cells,
                                const std::int32_t* entries, const Lanes& otherwise) noexcept {
-  alignas(64) double rate[lane_count];
-  for (int l = 0; l < lane_count; ++l)
-    rate[l] = state.nodes.rate[static_cast<std::size_t>(entries[cells.index[l]])];
-  const Lanes found = Lanes::load(rate);
+  const Lanes found = lanes_of(
+      [&](int l) { return state.nodes.rate[static_cast<std::size_t>(entries[cells.index[l]])]; });
   return select(found == found, found, otherwise);
 }
 
@@ -88,12 +86,11 @@ VADOSE_INLINE Lanes volume_stretch(const State<M>& state, const CellFinder<State
   const Lanes limit =
       max(Lanes(1.0), (Lanes(1.0) - porosity) * Lanes(1 / (1 - dispersed_porosity)));
   if (!any(limit < follows)) return follows;
-  alignas(64) double pressure[lane_count];
-  for (int l = 0; l < lane_count; ++l) {
+  const Lanes pressure = lanes_of([&](int l) -> Real {
     const std::int32_t owner = state.nodes.dof[static_cast<std::size_t>(entries[cells.index[l]])];
-    pressure[l] = owner < 0 ? 0 : state.nodes.cell[static_cast<std::size_t>(owner)].pressure;
-  }
-  return select(Lanes(0.0) < Lanes::load(pressure), follows, min(follows, limit));
+    return owner < 0 ? 0 : state.nodes.cell[static_cast<std::size_t>(owner)].pressure;
+  });
+  return select(Lanes(0.0) < pressure, follows, min(follows, limit));
 }
 
 /// Pressures of the cells as the points read them, in the blocks that are sought.
@@ -123,10 +120,8 @@ template <class M>
 VADOSE_INLINE Lanes pressures_at(const State<M>& state, const CellFinder<State<M>::dim>& cells,
                                  const std::int32_t* entries,
                                  const Lanes (&x)[State<M>::dim]) noexcept {
-  alignas(64) double head[lane_count];
-  for (int l = 0; l < lane_count; ++l)
-    head[l] = state.nodes.head[static_cast<std::size_t>(entries[cells.index[l]])];
-  Lanes p = Lanes::load(head);
+  Lanes p = lanes_of(
+      [&](int l) { return state.nodes.head[static_cast<std::size_t>(entries[cells.index[l]])]; });
   for (int d = 0; d < State<M>::dim; ++d) p += Lanes(state.water.density * state.gravity[d]) * x[d];
   return p;
 }

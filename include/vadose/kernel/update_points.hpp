@@ -488,10 +488,9 @@ VADOSE_INLINE void exchange_batch(State<M>& state, std::size_t b,
   transpose(share);
   const Lanes mass = points.load(field::mass, b);
   const Lanes volume = points.load(field::volume, b);
-  alignas(64) double fillings[lane_count];
-  for (int l = 0; l < lane_count; ++l)
-    fillings[l] = state.nodes.filling[static_cast<std::size_t>(entries[cells.index[l]])];
-  const Lanes filling = Lanes::load(fillings);
+  const Lanes filling = lanes_of([&](int l) {
+    return state.nodes.filling[static_cast<std::size_t>(entries[cells.index[l]])];
+  });
   const Lanes pores = volume * points.load(field::porosity, b);
   const Lanes held = select(volume > Lanes(0.0), mass, Lanes(0.0));
   const Lanes by_mass = held * share[lane::by_mass];

@@ -341,6 +341,7 @@ class Solver {
       n.dof.assign(size, -1);
       n.face.assign(size * dim, {});
       n.head.assign(size, 0);
+      n.soil.assign(size, 0);
       n.rate.assign(size, unset);
       n.filling.assign(size, 0);
       n.near_sliver.assign(static_cast<std::size_t>(state_.grid.slots()), 1);
