@@ -4,6 +4,8 @@
 /// \file
 /// Step 4: faces between cells: head gradient, upstream saturation, conductivity.
 
+#include <algorithm>
+
 #include <vadose/kernel/face_mobility.hpp>
 #include <vadose/kernel/rain.hpp>
 
@@ -461,7 +463,9 @@ void connect_cells(State<M>& state) {
   parallel_for(static_cast<std::size_t>(state.grid.slots()), state.options.threads,
                [&](std::size_t s, int) {
                  FaceBatch<M> batch;
-                 FaceFlux* face = &state.nodes.face[s * Block<dim>::cells * dim];
+                 const std::size_t first = s * Block<dim>::cells * dim;
+                 FaceFlux* face = &state.nodes.face[first];
+                 std::fill_n(&state.nodes.flux[first], Block<dim>::cells * dim, 0.0);
                  for_cube<dim>(0, Block<dim>::edge, [&](const Index<dim>& local) {
                    const CellView<M> view(state, local, static_cast<int>(s));
                    for (int d = 0; d < dim; ++d) find_face(state, view, d, *face++, batch);

@@ -79,7 +79,7 @@ struct alignas(64) Cell {
 
   Real centroid[Dim] = {};  ///< of the water-bearing volume [m]
   Real pore_volume = 0;     ///< sum n V [m3]
-  Real water = 0;           ///< M_c [kg]
+  Real soil_pores = 0;      ///< pore volume of the soil in the cell, as soil_porosity [m3]
   Real storage = 0;         ///< sum V d(theta)/dp [m3/Pa]
   Real content = 0;         ///< water volume at reference density, M / rho_l0 [m3]
   Real modulus = 0;         ///< K* = S / (S/K + S_p) of soil [Pa]
@@ -92,13 +92,13 @@ struct alignas(64) Cell {
   Real soil_porosity = 1;  ///< of the soil in the cell, also where free water fills most of it
   Real mean_stress = 0;    ///< mean Bishop stress of the skeleton in the cell [Pa]
 
+  Real water = 0;                ///< M_c [kg]
   Real limit = 1;                ///< donor limiter on outflow
   Real gain = 0;                 ///< water received in the step [kg]
   Real mean_velocity[Dim] = {};  ///< of the water it holds, new, mass weighted [m/s]
   Real skeleton_rate = 0;        ///< div v^s [1/s]
   /// Of air-filled pores in the last step, NaN: not known; in unsaturated models [m3/s].
   Real closing = unset;
-  Real soil_pores = 0;  ///< pore volume of the soil in the cell, as soil_porosity [m3]
 
   Real momentum_gain[Dim] = {};  ///< velocity change by exchanged momentum [m/s]
   Real low = 0, high = 0;        ///< bracket of the pressure while it is sought [Pa]
@@ -195,6 +195,7 @@ struct GridState {
   std::vector<Real> rate;     ///< div v^s of the same cell; NaN where there is none [1/s]
   std::vector<std::int32_t> dof;  ///< entry of the cell whose pressure a cell uses, -1: none
   std::vector<FaceFlux> face;     ///< Dim per cell
+  std::vector<Real> flux;         ///< FaceFlux::flux of them, as loops over neighbours read it
   std::vector<CarriedNode<Dim>> carried;  ///< in ascending order, once per carrying cell
   std::vector<std::uint16_t> node_flags;  ///< walls and prescribed motion, see NodeFlag
 };

@@ -424,20 +424,20 @@ void find_mean_velocities(State<M>& state) {
 template <class M>
 void find_momentum_gains(State<M>& state) {
   constexpr int dim = State<M>::dim;
-  for_cells(state.grid, state.options.threads,
-            [&](std::int32_t e, const Index<dim>& local, int slot, int) {
-              if (state.nodes.dof[static_cast<std::size_t>(e)] != e) return;
-              auto& cell = state.nodes.cell[static_cast<std::size_t>(e)];
-              for_inflows(state, CellView<M>(state, local, slot), [&](const Inflow<dim>& f) {
-                const Real dm = f.from && f.flux > 0 ? passed_water(state, cell, f) : 0;
-                if (dm > 0)
-                  for (int d = 0; d < dim; ++d)
-                    cell.momentum_gain[d] +=
-                        dm * (f.from->mean_velocity[d] - cell.mean_velocity[d]);
-              });
-              const Real after = cell.water + cell.gain;
-              for (Real& v : cell.momentum_gain) v = after > 0 ? v / after : 0;
-            });
+  for_cells(
+      state.grid, state.options.threads,
+      [&](std::int32_t e, const Index<dim>& local, int slot, int) {
+        if (state.nodes.dof[static_cast<std::size_t>(e)] != e) return;
+        auto& cell = state.nodes.cell[static_cast<std::size_t>(e)];
+        for_collected_inflows(state, CellView<M>(state, local, slot), [&](const Inflow<dim>& f) {
+          const Real dm = f.from && f.flux > 0 ? passed_water(state, cell, f) : 0;
+          if (dm > 0)
+            for (int d = 0; d < dim; ++d)
+              cell.momentum_gain[d] += dm * (f.from->mean_velocity[d] - cell.mean_velocity[d]);
+        });
+        const Real after = cell.water + cell.gain;
+        for (Real& v : cell.momentum_gain) v = after > 0 ? v / after : 0;
+      });
 }
 
 /// The shares of all cells, as points read them.
