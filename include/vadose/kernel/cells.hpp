@@ -160,6 +160,12 @@ struct CellView {
     const int c = cell[axis] + step;
     return c >= 0 && c < state.grid.cells()[axis];
   }
+  /// The same of all neighbours: the cell is at no wall.
+  bool has_neighbours() const noexcept {
+    for (int d = 0; d < dim; ++d)
+      if (!has_neighbour(d, -1) || !has_neighbour(d, 1)) return false;
+    return true;
+  }
   std::int32_t entry() const noexcept { return tile[at]; }
   std::int32_t neighbour(int axis, int step) const noexcept {
     return tile[at + step * BlockGrid<dim>::tile_stride(axis)];

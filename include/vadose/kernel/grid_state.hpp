@@ -126,25 +126,25 @@ enum class FaceKind : std::uint8_t {
   surface,  ///< soil and air, or a wall held at a pressure
 };
 
-/// The lower face of a cell along one axis.
+/// The lower face of a cell along one axis. First what every pass over the faces reads.
 struct FaceFlux {
-  Real head_gradient = 0;  ///< H = (dp - rho g dx) / d, upwards along the axis [Pa/m]
-  Real saturation = 0;     ///< of the upstream side
-  Real conductivity = 0;   ///< Kirchhoff blend [m/s]
-  Real held_pressure = 0;  ///< at an open surface or wall [Pa]
-  Real distance = 0;       ///< over which H is taken [m]
-  Real outward = 1;  ///< factor of the conductivity of the cell on the way to its outer face [-]
-  Real area = 0;     ///< [m2]
-  Real flux = 0;     ///< volume per time, upwards along the axis, times A [m3/s]
   FaceKind kind = FaceKind::closed;
-  std::int16_t held = -1;   ///< which HeldPressure; -1: none
   bool one_way = false;     ///< lets water out only
   bool fed = false;         ///< ground under rain or a film, which takes what comes out
   bool wetted = false;      ///< and feeds it
   bool thirsty = false;     ///< the soil drinks all it is given: its surface stays under suction
-  Real supply = 0;          ///< what a fed or thirsty face can take at most [m3/s]
   bool soil_below = false;  ///< of a surface or to_free face: the soil is on the lower side
   bool from_above = false;  ///< of an inside face: the upper cell is upstream as the step begins
+  std::int16_t held = -1;   ///< which HeldPressure; -1: none
+  Real head_gradient = 0;   ///< H = (dp - rho g dx) / d, upwards along the axis [Pa/m]
+  Real saturation = 0;      ///< of the upstream side
+  Real conductivity = 0;    ///< Kirchhoff blend [m/s]
+  Real area = 0;            ///< [m2]
+  Real flux = 0;            ///< volume per time, upwards along the axis, times A [m3/s]
+  Real distance = 0;        ///< over which H is taken [m]
+  Real held_pressure = 0;   ///< at an open surface or wall [Pa]
+  Real outward = 1;  ///< factor of the conductivity of the cell on the way to its outer face [-]
+  Real supply = 0;   ///< what a fed or thirsty face can take at most [m3/s]
 
   /// A surface that lets no water through, as far as pressures and nodes are concerned.
   bool is_shut() const noexcept {

@@ -145,13 +145,14 @@ VADOSE_INLINE void update_velocity(const State<M>& state, Points& points, std::s
   }
 }
 
-/// Stretches GIMP half sizes along the axes, at most to half a cell (the three-node stencil).
+/// Stretches GIMP half sizes along the axes by rates dv_d/dx_d, at most to half a cell (the three-node
+/// stencil).
 template <class Points, int Dim>
-VADOSE_INLINE void update_half_sizes(Points& points, std::size_t b,
-                                     const Lanes (&gradient)[Dim][Dim], Real dt, Real h) noexcept {
+VADOSE_INLINE void update_half_sizes(Points& points, std::size_t b, const Lanes (&stretching)[Dim],
+                                     Real dt, Real h) noexcept {
   if constexpr (Points::fields::template has<field::HalfSize>) {
     for (int d = 0; d < Dim; ++d) {
-      const Lanes half = points.load(field::half_size, b, d) * exp(Lanes(dt) * gradient[d][d]);
+      const Lanes half = points.load(field::half_size, b, d) * exp(Lanes(dt) * stretching[d]);
       points.store(field::half_size, b, d, min(max(half, Lanes(1e-3 * h)), Lanes(0.5 * h)));
     }
   }
@@ -287,7 +288,9 @@ VADOSE_INLINE void update_solid_batch(State<M>& state, std::size_t b,
     report_trouble(state, points, b, solid_only, "porosity in (0, 1)", "solid",
                    Lanes(1.0) - mass / (Lanes(soil.material.solid_density) * volume));
   }
-  update_half_sizes(points, b, motion.gradient, dt, state.grid.cell_size());
+  Lanes stretching[dim];
+  for (int d = 0; d < dim; ++d) stretching[d] = motion.gradient[d][d];
+  update_half_sizes(points, b, stretching, dt, state.grid.cell_size());
   update_velocity(state, points, b, stencil, frame, x, tile, motion);
   move(state, points, b, "solid", motion.velocity, sums);
 }
@@ -715,16 +718,16 @@ VADOSE_INLINE void carry_pore_water(State<M>& state, std::size_t b,
     load_half_sizes(points, b, half);
     Stencil<typename M::Shape, dim> skeleton;
     skeleton.evaluate(frame, x, half);
-    PointMotion<dim> carried;
-    interpolate<true>(skeleton, solid, carried);
+    FlowGather<typename M::Shape, dim> carried;
+    carried.sum(skeleton, solid);
     Lanes trace = carried.velocity[0] * over_radius<typename State<M>::Kinematics, dim>(x, Real(0));
-    for (int d = 0; d < dim; ++d) trace += carried.gradient[d][d];
+    for (int d = 0; d < dim; ++d) trace += carried.stretching[d];
     const Lanes rate = cell_rates(state, cells, entries, trace);
     const Lanes n = points.load(field::porosity, b);
     const Lanes stretch = volume_stretch(state, cells, entries, n, Lanes(state.dt) * rate);
     points.store(field::volume, b, points.load(field::volume, b) * stretch);
     points.store(field::porosity, b, Lanes(1.0) - (Lanes(1.0) - n) / stretch);
-    update_half_sizes(points, b, carried.gradient, state.dt, state.grid.cell_size());
+    update_half_sizes(points, b, carried.stretching, state.dt, state.grid.cell_size());
     move(state, points, b, "liquid", carried.velocity, sums);
   }
 }
@@ -777,7 +780,7 @@ void carry_liquid(State<M>& state) {
   constexpr int dim = State<M>::dim;
   for_blocks(state.liquid, state.options.threads, [&](const BatchRange& range, int thread) {
     Tile<dim>& solid = state.tile(thread, 3);
-    if constexpr (is_deformable<M>) solid.read(state.grid, range.slot, state.nodes.solid_out);
+    if constexpr (is_deformable<M>) solid.read_twice(state.grid, range.slot, state.nodes.solid_out);
     const TileFrame<dim> frame = tile_frame(state.grid, range.slot);
     const std::int32_t* entries = state.grid.tile(range.slot);
     StepSums& sums = state.sums[static_cast<std::size_t>(thread)];
