@@ -111,7 +111,7 @@ struct alignas(64) Cell {
   /// Liquid pressure at the surface of a cell at air, across each axis: as held there, else that of the
   /// cell itself (a closed surface carries it) [Pa].
   Real reference_pressure[Dim] = {};
-  Real change = 0;  ///< of the pressure over the step, where solved for [Pa]
+  Real change = 0;  ///< of the pressure over the step, of soil or where solved for [Pa]
 
   Real reference_share[Dim] = {};  ///< part of reference_pressure that follows that of the cell [-]
   Real near_water = 0;             ///< free water weighted by its nearness to `ground` [kg]

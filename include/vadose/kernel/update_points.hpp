@@ -337,20 +337,58 @@ void share_gain(const State<M>& state, const Cell<State<M>::dim>& cell, Record& 
   }
 }
 
+/// Water that eight soil cells of one material would have to give off, over the pore volume squeezed out of
+/// them, to keep their pressure: S, and what their change of porosity does to the retention curve,
+/// n (1 - n) dS/dn [-].
+template <class M>
+Lanes squeeze_factors(const State<M>& state, const CellBatch<M>& batch) {
+  using C = Cell<State<M>::dim>;
+  const Lanes zero(0.0), one(1.0);
+  Lanes squeeze = batch.numbers([](const C& c) { return c.saturation; });
+  if constexpr (is_unsaturated<M> && is_deformable<M>) {
+    const Lanes p = batch.numbers([](const C& c) { return c.pressure; });
+    if (!any(p < zero)) return squeeze;
+    const Lanes n = max(batch.numbers([](const C& c) { return c.porosity; }), Lanes(1e-6));
+    const Lanes slope = swrc::porosity_slope<Lanes>(state.soils[batch.material].material.retention,
+                                                    max(-p, zero), n);
+    squeeze += select(p < zero, n * (one - n) * slope, zero);
+  }
+  return squeeze;
+}
+
 /// Change of the pressure of a soil cell in the step as its start foretells it [Pa]: by gained water, by
 /// squeezed pores and by what their change of porosity does to the retention curve. It starts the search
 /// for the pressure, which then needs one pass over the points instead of two.
 template <class M>
-Real predicted_change(const State<M>& state, const Cell<State<M>::dim>& cell) noexcept {
-  const Real n = max(cell.porosity, 1e-6);
-  Real squeeze = cell.saturation;
-  if constexpr (is_unsaturated<M> && is_deformable<M>)
-    if (cell.pressure < 0)
-      squeeze += n * (1 - n) *
-                 swrc::porosity_slope<Real>(state.soils[cell.material].material.retention,
-                                            -cell.pressure, n);
-  const Real squeezed = cell.skeleton_rate * state.dt * squeeze * cell.pore_volume / n;
+Real predicted_change(const State<M>& state, const Cell<State<M>::dim>& cell,
+                      Real squeeze) noexcept {
+  const Real squeezed =
+      cell.skeleton_rate * state.dt * squeeze * cell.pore_volume / max(cell.porosity, 1e-6);
   return (cell.gain / state.water.density - squeezed) / max(cell.storage, 1e-30);
+}
+
+/// Predicts the changes of the pressures of the soil cells of a block that no implicit solution gave.
+template <class M>
+void predict_changes(State<M>& state, std::size_t slot) {
+  constexpr std::size_t cells = Block<State<M>::dim>::cells;
+  auto& nodes = state.nodes;
+  CellBatch<M> batch;
+  const auto finish = [&] {
+    if (batch.count == 0) return;
+    const Lanes squeeze = squeeze_factors(state, batch);
+    for (int l = 0; l < batch.count; ++l)
+      batch.cell[l]->change = predicted_change(state, *batch.cell[l], squeeze[l]);
+    batch.count = 0;
+  };
+  for (std::size_t i = slot * cells; i < (slot + 1) * cells; ++i) {
+    auto& cell = nodes.cell[i];
+    if (nodes.dof[i] != static_cast<std::int32_t>(i)) continue;
+    if (cell.kind != CellKind::soil || cell.solved) continue;
+    if (batch.count == lane_count || cell.material != batch.material) finish();
+    batch.material = cell.material;
+    batch.cell[batch.count++] = &cell;
+  }
+  finish();
 }
 
 /// What the pore water of a cell takes, and its pressure after the step as heads are kept.
@@ -361,11 +399,7 @@ Real find_share(const State<M>& state, const Cell<State<M>::dim>& cell, Record& 
   if (cell.kind == CellKind::soil) {
     share_gain(state, cell, share);
     for (int d = 0; d < dim; ++d) share[lane::velocity_gain + d] = cell.momentum_gain[d];
-    if (cell.solved) {
-      p += cell.change;
-    } else {
-      p += predicted_change(state, cell);
-    }
+    p += cell.change;
   } else if (cell.pore_gain > 0) {
     share[lane::by_pores] = cell.pore_gain / cell.soil_pores;
   } else if (cell.pore_gain < 0) {
@@ -425,21 +459,34 @@ void find_mean_velocities(State<M>& state) {
 
 /// What leaves a cell takes the velocity of its water along, the mean where it arrives.
 template <class M>
-void find_momentum_gains(State<M>& state) {
+void find_momentum_gain(const State<M>& state, const CellView<M>& view,
+                        Cell<State<M>::dim>& cell) noexcept {
   constexpr int dim = State<M>::dim;
-  for_cells(
-      state.grid, state.options.threads,
-      [&](std::int32_t e, const Index<dim>& local, int slot, int) {
-        if (state.nodes.dof[static_cast<std::size_t>(e)] != e) return;
-        auto& cell = state.nodes.cell[static_cast<std::size_t>(e)];
-        for_collected_inflows(state, CellView<M>(state, local, slot), [&](const Inflow<dim>& f) {
-          const Real dm = f.from && f.flux > 0 ? passed_water(state, cell, f) : 0;
-          if (dm > 0)
-            for (int d = 0; d < dim; ++d)
-              cell.momentum_gain[d] += dm * (f.from->mean_velocity[d] - cell.mean_velocity[d]);
+  for_collected_inflows(state, view, [&](const Inflow<dim>& f) {
+    const Real dm = f.from && f.flux > 0 ? passed_water(state, cell, f) : 0;
+    if (dm > 0)
+      for (int d = 0; d < dim; ++d)
+        cell.momentum_gain[d] += dm * (f.from->mean_velocity[d] - cell.mean_velocity[d]);
+  });
+  const Real after = cell.water + cell.gain;
+  for (Real& v : cell.momentum_gain) v = after > 0 ? v / after : 0;
+}
+
+/// What points need to know of every cell before its shares: momentum gained, change of pressure.
+template <class M>
+void find_changes(State<M>& state) {
+  constexpr int dim = State<M>::dim;
+  parallel_for(
+      static_cast<std::size_t>(state.grid.slots()), state.options.threads, [&](std::size_t s, int) {
+        const int slot = static_cast<int>(s);
+        std::int32_t e = slot * Block<dim>::cells;
+        for_cube<dim>(0, Block<dim>::edge, [&](const Index<dim>& local) {
+          const auto i = static_cast<std::size_t>(e);
+          if (state.nodes.dof[i] == e)
+            find_momentum_gain(state, CellView<M>(state, local, slot), state.nodes.cell[i]);
+          ++e;
         });
-        const Real after = cell.water + cell.gain;
-        for (Real& v : cell.momentum_gain) v = after > 0 ? v / after : 0;
+        predict_changes(state, s);
       });
 }
 
@@ -823,7 +870,7 @@ void update_liquid(State<M>& state) {
   if constexpr (has_skeleton<M>) {
     update_liquid_velocities(state);
     find_mean_velocities(state);
-    find_momentum_gains(state);
+    find_changes(state);
     find_shares(state);
     carry_liquid(state);
   } else {
