@@ -89,8 +89,10 @@ void sum_water(State<M>& state) {
     Tile<dim>& free = state.tile(thread, 1);
     const TileFrame<dim> frame = tile_frame(state.grid, range.slot);
     bool any_pore = false, any_free = false;
+    ComingRecords<dim> coming(state.grid, range.slot, state.nodes.pore);
     for (std::size_t b = range.begin; b < range.end; ++b) {
       state.liquid.prefetch(b + 2);
+      coming.ask_for_some();
       Lanes x[dim], record[lane_count];
       load_positions(state.liquid, b, x);
       CellFinder<dim> cells;

@@ -161,8 +161,13 @@ void map_solid(State<M>& state) {
     Tile<dim>& tile = state.tile(thread, 0);
     Tile<dim>& cell_sums = state.tile(thread, 1);
     const TileFrame<dim> frame = tile_frame(state.grid, range.slot);
+    ComingRecords<dim> nodes(state.grid, range.slot, state.nodes.solid_in);
+    ComingRecords<dim> sums(state.grid, range.slot,
+                            MeanByCell ? state.nodes.content : state.nodes.solid_in);
     for (std::size_t b = range.begin; b < range.end; ++b) {
       state.solid.prefetch(b + 2);
+      nodes.ask_for_some();
+      if constexpr (MeanByCell) sums.ask_for_some();
       map_solid_batch<MeanByCell>(state, b, frame, state.grid.tile(range.slot), tile.record,
                                   cell_sums);
     }
@@ -253,8 +258,10 @@ void map_liquid(State<M>& state) {
   for_blocks_adding(state.liquid, state.options.threads, [&](const BatchRange& range, int thread) {
     Tile<dim>& tile = state.tile(thread);
     const TileFrame<dim> frame = tile_frame(state.grid, range.slot);
+    ComingRecords<dim> coming(state.grid, range.slot, state.nodes.liquid_in);
     for (std::size_t b = range.begin; b < range.end; ++b) {
       state.liquid.prefetch(b + 2);
+      coming.ask_for_some();
       map_liquid_batch(state, b, frame, range.slot, tile.record);
     }
     tile.add_to(state.grid, range.slot, state.nodes.liquid_in);

@@ -146,7 +146,9 @@ void sum_content(State<M>& state) {
     Tile<dim>& tile = state.tile(thread);
     const TileFrame<dim> frame = tile_frame(state.grid, range.slot);
     const std::int32_t* entries = state.grid.tile(range.slot);
+    ComingRecords<dim> coming(state.grid, range.slot, state.nodes.content);
     for (std::size_t b = range.begin; b < range.end; ++b) {
+      coming.ask_for_some();
       const int group = state.liquid.group(b);
       if (group == state.free_group()) continue;
       Lanes x[dim], record[lane_count];

@@ -44,6 +44,34 @@ struct Tile {
   }
 };
 
+/// Asks the cache, a few with every batch of points, for the records that a tile will be read from or added
+/// to once these points are done. Else each of them waits for memory: they lie apart, and the points that
+/// stream by drive them out of the cache.
+template <int Dim>
+class ComingRecords {
+ public:
+  ComingRecords(const BlockGrid<Dim>& grid, int slot, const AlignedVector<Record>& records) noexcept
+      : entry_(grid.tile(slot)), records_(records.data()) {}
+
+  VADOSE_INLINE void ask_for_some() noexcept {
+    for (int i = 0; i < per_batch && next_ < Block<Dim>::tile_size; ++i)
+      __builtin_prefetch(records_ + entry_[next_++], 0, 2);
+  }
+
+ private:
+  static constexpr int per_batch = 8;
+  const std::int32_t* entry_;
+  const Record* records_;
+  int next_ = 0;
+};
+
+/// Block whose points come after those of a range; the same where there is none.
+template <class Points>
+int next_slot(const Points& points, const BatchRange& range) noexcept {
+  const BatchRange* next = &range + 1;
+  return next == points.blocks().data() + points.blocks().size() ? range.slot : next->slot;
+}
+
 /// Calls f(block range, thread) for all blocks of points; blocks may be worked on together.
 template <class Points, class F>
 void for_blocks(const Points& points, int threads, F&& f) {

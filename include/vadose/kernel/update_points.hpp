@@ -306,8 +306,10 @@ void update_solid(State<M>& state) {
     const TileFrame<dim> frame = tile_frame(state.grid, range.slot);
     const std::int32_t* entries = state.grid.tile(range.slot);
     StepSums& sums = state.sums[static_cast<std::size_t>(thread)];
+    ComingRecords<dim> coming(state.grid, next_slot(state.solid, range), state.nodes.solid_out);
     for (std::size_t b = range.begin; b < range.end; ++b) {
       state.solid.prefetch(b + 2);
+      coming.ask_for_some();
       update_solid_batch<RateByCell>(state, b, frame, entries, tile.record, sums);
     }
   });
@@ -810,8 +812,12 @@ void update_liquid_velocities(State<M>& state) {
     Tile<dim>& cell_sums = state.tile(thread, 0);
     liquid.read(state.grid, range.slot, state.nodes.liquid_out);
     const TileFrame<dim> frame = tile_frame(state.grid, range.slot);
+    ComingRecords<dim> sums(state.grid, range.slot, state.nodes.content);
+    ComingRecords<dim> nodes(state.grid, next_slot(state.liquid, range), state.nodes.liquid_out);
     for (std::size_t b = range.begin; b < range.end; ++b) {
       state.liquid.prefetch(b + 2);
+      sums.ask_for_some();
+      nodes.ask_for_some();
       const LiquidPlace<M> at(state, b, range.slot, frame);
       if (at.is_free && state.frozen) continue;
       accelerate_liquid(state, at, frame, liquid.record);
