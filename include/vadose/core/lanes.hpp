@@ -251,6 +251,24 @@ struct Lanes {
   }
 };
 
+/// f(0) .. f(7), for numbers that lie apart. They go straight into registers: a wide load of what was
+/// just stored one by one would wait until all of it has reached the cache.
+template <class F>
+VADOSE_INLINE Lanes lanes_of(F&& f) noexcept {
+  Lanes r;
+  for (int i = 0; i < detail::native_parts; ++i) {
+    const int l = i * detail::native_width;
+    if constexpr (detail::native_width == 8)
+      r.part[i] = detail::NativeVector{f(l),     f(l + 1), f(l + 2), f(l + 3),
+                                       f(l + 4), f(l + 5), f(l + 6), f(l + 7)};
+    else if constexpr (detail::native_width == 4)
+      r.part[i] = detail::NativeVector{f(l), f(l + 1), f(l + 2), f(l + 3)};
+    else
+      r.part[i] = detail::NativeVector{f(l), f(l + 1)};
+  }
+  return r;
+}
+
 // Scalar twins, so that `template <class T>` code reads the same for T = Real.
 using std::abs;
 using std::floor;

@@ -31,6 +31,20 @@ noexcept {
   return r;
 }
 
+/// Lanes 0 .. 3 in both halves. A template for the same reason as transpose().
+template <class L>
+requires std::is_same_v<L, Lanes> VADOSE_INLINE L low_twice(const L& a)
+noexcept {
+  using V = std::remove_cvref_t<decltype(a.part[0])>;
+  constexpr int parts = lane_count / static_cast<int>(sizeof(V) / sizeof(double));
+  L r;
+  if constexpr (parts == 1)
+    r.part[0] = __builtin_shufflevector(a.part[0], a.part[0], 0, 1, 2, 3, 0, 1, 2, 3);
+  else
+    for (int i = 0; i < parts; ++i) r.part[i] = a.part[i % (parts / 2)];
+  return r;
+}
+
 /// Transposes eight Lanes in place: row[i][l] <-> row[l][i].
 /// A template only so that the branches for other widths are never instantiated.
 template <class L>

@@ -89,8 +89,10 @@ void sum_water(State<M>& state) {
     Tile<dim>& free = state.tile(thread, 1);
     const TileFrame<dim> frame = tile_frame(state.grid, range.slot);
     bool any_pore = false, any_free = false;
+    ComingRecords<dim> coming(state.grid, range.slot, state.nodes.pore);
     for (std::size_t b = range.begin; b < range.end; ++b) {
       state.liquid.prefetch(b + 2);
+      coming.ask_for_some();
       Lanes x[dim], record[lane_count];
       load_positions(state.liquid, b, x);
       CellFinder<dim> cells;
@@ -160,6 +162,12 @@ struct CellView {
     const int c = cell[axis] + step;
     return c >= 0 && c < state.grid.cells()[axis];
   }
+  /// The same of all neighbours: the cell is at no wall.
+  bool has_neighbours() const noexcept {
+    for (int d = 0; d < dim; ++d)
+      if (!has_neighbour(d, -1) || !has_neighbour(d, 1)) return false;
+    return true;
+  }
   std::int32_t entry() const noexcept { return tile[at]; }
   std::int32_t neighbour(int axis, int step) const noexcept {
     return tile[at + step * BlockGrid<dim>::tile_stride(axis)];
@@ -199,6 +207,7 @@ void classify_cells(State<M>& state) {
               const auto i = static_cast<std::size_t>(e);
               auto& cell = nodes.cell[i];
               cell.kind = CellKind::none;
+              nodes.soil[i] = 0;
               cell.fill = 0;
               cell.raw_fill = 0;
               const CellView<M> view(state, local, slot);
@@ -209,6 +218,7 @@ void classify_cells(State<M>& state) {
               cell.fill = cell.raw_fill;
               const bool is_soil = soil > 0 && (free <= 0 || soil > 0.5 * view.volume());
               cell.kind = is_soil ? CellKind::soil : CellKind::free;
+              nodes.soil[i] = is_soil ? 1 : 0;
             });
 }
 

@@ -16,32 +16,39 @@ namespace vadose::kernel {
 /// The gradients are those of the pressure force, so that force and rate are adjoint. (They must
 /// be: a mismatch of 1e-3 lets undrained soil grow by 1e-3 of its highest frequency.)
 template <class M>
-void find_rates(State<M>& state) {
+void find_rates(State<M>& state, const CellView<M>& view) noexcept {
   constexpr int dim = State<M>::dim;
+  const auto& nodes = state.nodes;
+  auto& c = state.nodes.cell[static_cast<std::size_t>(view.entry())];
+  Real xi[dim];
+  quad_coordinates(state, view.cell, c, xi);
+  c.rate = 0;
+  c.skeleton_rate = 0;
+  if (c.drop) return;
+  Real rate = 0, skeleton_rate = 0;
+  for_cube<dim>(0, 2, [&](const Index<dim>& corner) {
+    int at = view.at;
+    for (int d = 0; d < dim; ++d) at += corner[d] * BlockGrid<dim>::tile_stride(d);
+    const auto i = static_cast<std::size_t>(view.tile[at]);
+    CornerFunction<dim> shape(xi, corner, 1 / state.grid.cell_size());
+    if constexpr (State<M>::Kinematics::axisymmetric)
+      shape.gradient[0] += shape.value / c.quad_point[0];
+    for (int d = 0; d < dim; ++d) {
+      if (c.kind == CellKind::free) rate += shape.gradient[d] * nodes.mixture[i][d];
+      if constexpr (is_deformable<M>) skeleton_rate += shape.gradient[d] * nodes.solid_out[i][d];
+    }
+  });
+  c.rate = rate;
+  c.skeleton_rate = skeleton_rate;
+}
+
+/// The same of all cells.
+template <class M>
+void find_rates(State<M>& state) {
   for_cells(state.grid, state.options.threads,
-            [&](std::int32_t e, const Index<dim>& local, int slot, int) {
-              auto& nodes = state.nodes;
-              if (nodes.dof[static_cast<std::size_t>(e)] != e) return;
-              const CellView<M> view(state, local, slot);
-              auto& c = nodes.cell[static_cast<std::size_t>(e)];
-              Real xi[dim];
-              quad_coordinates(state, view.cell, c, xi);
-              c.rate = 0;
-              c.skeleton_rate = 0;
-              if (c.drop) return;
-              for_cube<dim>(0, 2, [&](const Index<dim>& corner) {
-                int at = view.at;
-                for (int d = 0; d < dim; ++d) at += corner[d] * BlockGrid<dim>::tile_stride(d);
-                const auto i = static_cast<std::size_t>(view.tile[at]);
-                CornerFunction<dim> shape(xi, corner, 1 / state.grid.cell_size());
-                if constexpr (State<M>::Kinematics::axisymmetric)
-                  shape.gradient[0] += shape.value / c.quad_point[0];
-                for (int d = 0; d < dim; ++d) {
-                  if (c.kind == CellKind::free) c.rate += shape.gradient[d] * nodes.mixture[i][d];
-                  if constexpr (is_deformable<M>)
-                    c.skeleton_rate += shape.gradient[d] * nodes.solid_out[i][d];
-                }
-              });
+            [&](std::int32_t e, const Index<State<M>::dim>& local, int slot, int) {
+              if (state.nodes.dof[static_cast<std::size_t>(e)] == e)
+                find_rates(state, CellView<M>(state, local, slot));
             });
 }
 
@@ -144,34 +151,52 @@ Real leaving_share(const State<M>& state, const CellView<M>& view, int axis, con
   return both ? inertia_share(state, face, soil_cell(view, axis, face)) : 0;
 }
 
-/// Flux per area through the lower face of a cell along an axis: the head gradient that drives the water
-/// at its nodes, as their velocities say, times the mobility of the face. (A node's own is a mean over
-/// its faces, wet and dry, inside and at the ground; across a slope they lie side by side, and the dry
-/// one would carry several times what it can.) The departure of the head gradient between the cells from
-/// its nodal mean adds to it and removes the checkerboard that nodes do not see. In the drag limit this
-/// is the two-point flux of the face. Free water passes as its points do, with the velocity of the nodes.
+/// Flux per area between two soil cells: the head gradient that drives the water at the nodes of the face,
+/// as their velocities say, times the mobility of the face. (A node's own is a mean over its faces, wet and
+/// dry, inside and at the ground; across a slope they lie side by side, and the dry one would carry several
+/// times what it can.) The departure of the head gradient between the cells from its nodal mean adds to it
+/// and removes the checkerboard that nodes do not see. In the drag limit this is the two-point flux of the
+/// face.
 template <class M>
-Real nodal_flux(const State<M>& state, const CellView<M>& view, int axis, const FaceFlux& face) {
+Real inside_flux(const State<M>& state, const CellView<M>& view, int axis,
+                 const FaceFlux& face) noexcept {
   constexpr int dim = State<M>::dim;
-  if (face.kind == FaceKind::surface) return surface_flux(state, view, axis, face).value;
   const auto& nodes = state.nodes;
-  Real velocity = 0, head_gradient = 0, mean_gradient = 0;
+  Real head_gradient = 0, mean_gradient = 0;
   for_cube<dim>(0, 2, [&](const Index<dim>& corner) {
     if (corner[axis]) return;
-    const auto i = static_cast<std::size_t>(flux_node(state, view, axis, face, corner));
-    const Record& r = nodes.relative[i];
-    velocity += r[axis];
-    head_gradient += nodes.mixture[i][4 + axis] * r[axis];
-    mean_gradient += r[4 + axis];
+    int at = view.at;
+    for (int d = 0; d < dim; ++d) at += corner[d] * BlockGrid<dim>::tile_stride(d);
+    const auto i = static_cast<std::size_t>(view.tile[at]);
+    head_gradient += nodes.mixture[i][4 + axis] * nodes.relative[i][axis];
+    mean_gradient += nodes.relative[i][4 + axis];
   });
+  if (!(face.saturation > 0) || !(face.conductivity > 0)) return 0;
   constexpr Real corners = power<dim - 1>(2.0);
-  if (face.kind == FaceKind::to_free) return face.saturation * velocity / corners;
   const std::int32_t side = face.is_from_above() ? view.entry() : view.neighbour(axis, -1);
   const auto& soil =
       nodes.cell[static_cast<std::size_t>(nodes.dof[static_cast<std::size_t>(side)])];
-  return face_mobility(state, face, soil, 1) * head_gradient / corners -
-         face_mobility(state, face, soil, checkerboard_inertia) *
-             (face.head_gradient - mean_gradient / corners);
+  const Real drag = face_drag(state, face, soil), inertia = state.water.density / state.dt;
+  return soil.porosity * face.saturation *
+         (head_gradient / corners / (inertia + drag) -
+          (face.head_gradient - mean_gradient / corners) / (checkerboard_inertia * inertia + drag));
+}
+
+/// Flux per area through the lower face of a cell along an axis. Free water passes as its points do, with
+/// the velocity of the nodes.
+template <class M>
+Real nodal_flux(const State<M>& state, const CellView<M>& view, int axis, const FaceFlux& face) {
+  constexpr int dim = State<M>::dim;
+  if (face.kind == FaceKind::inside) return inside_flux(state, view, axis, face);
+  if (face.kind == FaceKind::surface) return surface_flux(state, view, axis, face).value;
+  Real velocity = 0;
+  for_cube<dim>(0, 2, [&](const Index<dim>& corner) {
+    if (corner[axis]) return;
+    velocity +=
+        state.nodes
+            .relative[static_cast<std::size_t>(flux_node(state, view, axis, face, corner))][axis];
+  });
+  return face.saturation * velocity / power<dim - 1>(2.0);
 }
 
 /// Flux through the lower face of a cell along an axis.
@@ -190,19 +215,16 @@ void find_flux(const State<M>& state, const CellView<M>& view, int axis, FaceFlu
     face.flux = face.soil_below ? max(face.flux, -face.supply) : min(face.flux, face.supply);
 }
 
-/// All face fluxes.
+/// Fluxes through the lower faces of a cell.
 template <class M>
-void find_fluxes(State<M>& state) {
+void find_fluxes(State<M>& state, const CellView<M>& view) {
   constexpr int dim = State<M>::dim;
-  for_cells(
-      state.grid, state.options.threads,
-      [&](std::int32_t e, const Index<dim>& local, int slot, int) {
-        const CellView<M> view(state, local, slot);
-        for (int d = 0; d < dim; ++d)
-          find_flux(
-              state, view, d,
-              state.nodes.face[static_cast<std::size_t>(e) * dim + static_cast<std::size_t>(d)]);
-      });
+  const std::size_t first = static_cast<std::size_t>(view.entry()) * dim;
+  for (int d = 0; d < dim; ++d) {
+    const std::size_t i = first + static_cast<std::size_t>(d);
+    find_flux(state, view, d, state.nodes.face[i]);
+    state.nodes.flux[i] = state.nodes.face[i].flux;
+  }
 }
 
 /// One face of a pressure cell as seen from it: flux into the cell [m3/s] and the cell beyond.
@@ -215,26 +237,28 @@ struct Inflow {
   Real place = 0;  ///< of the face on that axis [m]
 };
 
-/// Calls f(inflow) for every face of a pressure cell and its slivers.
-template <class M, class F>
-void for_inflows(const State<M>& state, const CellView<M>& view, F&& f) {
+/// Calls f(inflow) for every face of a pressure cell and its slivers; flux_at(i) is the flux through face
+/// i of the grid.
+template <class M, class Flux, class F>
+void for_inflows(const State<M>& state, const CellView<M>& view, Flux&& flux_at, F&& f) {
   constexpr int dim = State<M>::dim;
   const auto& nodes = state.nodes;
   const auto other = [&](std::int32_t e) -> const Cell<dim>* {
     const std::int32_t owner = nodes.dof[static_cast<std::size_t>(e)];
     return owner < 0 ? nullptr : &nodes.cell[static_cast<std::size_t>(owner)];
   };
-  const auto face = [&](std::int32_t e, int axis) -> const FaceFlux& {
-    return nodes.face[static_cast<std::size_t>(e) * dim + static_cast<std::size_t>(axis)];
+  const auto face = [&](std::int32_t e, int axis) {
+    return static_cast<std::size_t>(e) * dim + static_cast<std::size_t>(axis);
   };
   const auto visit = [&](std::int32_t e, std::int32_t below, std::int32_t above, int axis,
                          int step) {
-    const FaceFlux& low = face(e, axis);
-    const FaceFlux& high = face(above, axis);
+    const std::size_t low = face(e, axis), high = face(above, axis);
+    const Real flux_low = flux_at(low), flux_high = flux_at(high);
     const Real h = state.grid.cell_size();
     const Real place = state.grid.origin()[axis] + (view.cell[axis] + step) * h;
-    if (low.flux != 0) f(Inflow<dim>{low.flux, other(below), &low, axis, place});
-    if (high.flux != 0) f(Inflow<dim>{-high.flux, other(above), &high, axis, place + h});
+    if (flux_low != 0) f(Inflow<dim>{flux_low, other(below), &nodes.face[low], axis, place});
+    if (flux_high != 0)
+      f(Inflow<dim>{-flux_high, other(above), &nodes.face[high], axis, place + h});
   };
   for_members(view, [&](std::int32_t e, const Index<dim>& step) {
     if (e == view.entry()) {
@@ -250,6 +274,31 @@ void for_inflows(const State<M>& state, const CellView<M>& view, F&& f) {
       visit(e, state.grid.entry(below), state.grid.entry(above), d, step[d]);
     }
   });
+}
+
+/// The same of the faces as they are.
+template <class M, class F>
+void for_inflows(const State<M>& state, const CellView<M>& view, F&& f) {
+  for_inflows(
+      state, view, [&](std::size_t i) { return state.nodes.face[i].flux; }, f);
+}
+
+/// The same once the fluxes are collected: neighbours then read 8 bytes of a face.
+template <class M, class F>
+void for_collected_inflows(const State<M>& state, const CellView<M>& view, F&& f) {
+  for_inflows(
+      state, view, [&](std::size_t i) { return state.nodes.flux[i]; }, f);
+}
+
+/// Collects the fluxes of all faces.
+template <class M>
+void collect_fluxes(State<M>& state) {
+  constexpr std::size_t faces = Block<State<M>::dim>::cells * State<M>::dim;
+  parallel_for(static_cast<std::size_t>(state.grid.slots()), state.options.threads,
+               [&](std::size_t s, int) {
+                 for (std::size_t i = s * faces; i < (s + 1) * faces; ++i)
+                   state.nodes.flux[i] = state.nodes.face[i].flux;
+               });
 }
 
 /// A cell gives at most this part of its water in an explicit step.
@@ -268,7 +317,7 @@ void limit_donors(State<M>& state) {
               const CellView<M> view(state, local, slot);
               auto& cell = state.nodes.cell[static_cast<std::size_t>(e)];
               Real out = 0, in = 0;
-              for_inflows(state, view, [&](const Inflow<dim>& f) {
+              for_collected_inflows(state, view, [&](const Inflow<dim>& f) {
                 out += max(0.0, -f.flux);
                 in += max(0.0, f.flux);
               });
@@ -295,37 +344,62 @@ Real passed_water(const State<M>& state, const Cell<State<M>::dim>& cell,
   return f.from && std::fabs(dm) < least_exchange * min(cell.water, f.from->water) ? 0 : dm;
 }
 
-/// Water gained by every cell and the counts of held boundaries.
+/// Water gained by a cell; what passes held boundaries is added to the ledger of its block.
+template <class M>
+void find_gain(State<M>& state, const CellView<M>& view, Cell<State<M>::dim>& cell) {
+  auto& ledger = state.nodes.ledger_in;
+  const std::size_t first = static_cast<std::size_t>(view.slot) * state.held.size();
+  Real gain = 0, most = 0;
+  cell.ground_axis = -1;
+  for_collected_inflows(state, view, [&](const Inflow<State<M>::dim>& f) {
+    const Real dm = passed_water(state, cell, f);
+    gain += dm;
+    if (cell.kind == CellKind::free && std::fabs(f.flux) > most &&
+        f.face->kind == FaceKind::to_free) {
+      most = std::fabs(f.flux);
+      cell.ground_axis = static_cast<std::int8_t>(f.axis);
+      cell.ground = f.place;
+    }
+    if (!f.from && f.face->held >= 0 && !f.face->fed)
+      ledger[(first + static_cast<std::size_t>(f.face->held)) * 2 + (dm > 0 ? 0 : 1)] +=
+          std::fabs(dm);
+  });
+  cell.gain = gain;
+}
+
+/// Pores of soil that free water fills for the most part (a free cell) stay full: what they lack or
+/// have too much passes between them and the free points of the cell.
+template <class M>
+void fill_submerged_pores(const State<M>& state, Cell<State<M>::dim>& cell) noexcept {
+  cell.pore_gain = 0;
+  if (cell.kind != CellKind::free || !(cell.soil_pores > 0)) return;
+  const Real full = state.water.density * cell.soil_pores *
+                    std::exp(max(0.0, cell.pressure) / state.water.bulk_modulus);
+  const Real wanted = full - cell.soil_water;
+  cell.pore_gain = min(wanted, 0.5 * max(0.0, cell.water + cell.gain));
+  cell.gain -= cell.pore_gain;
+}
+
+/// How fast the air-filled pores of a cell close: the next step must see their end coming.
+template <class M>
+void find_closing(const State<M>& state, Cell<State<M>::dim>& cell) noexcept {
+  const Real bulk = cell.soil_pores / cell.soil_porosity;
+  cell.closing = cell.gain / (state.water.density * state.dt) - bulk * cell.skeleton_rate;
+}
+
+/// What the fluxes bring to every cell, and the counts of held boundaries.
 template <class M>
 void find_gains(State<M>& state) {
-  constexpr int dim = State<M>::dim;
   const std::size_t held = state.held.size();
   auto& nodes = state.nodes;
   nodes.ledger_in.assign(static_cast<std::size_t>(state.grid.slots()) * 2 * held, 0);
   for_cells(state.grid, state.options.threads,
-            [&](std::int32_t e, const Index<dim>& local, int slot, int) {
+            [&](std::int32_t e, const Index<State<M>::dim>& local, int slot, int) {
               if (nodes.dof[static_cast<std::size_t>(e)] != e) return;
               auto& cell = nodes.cell[static_cast<std::size_t>(e)];
-              const CellView<M> view(state, local, slot);
-              cell.gain = 0;
-              cell.ground_axis = -1;
-              Real most = 0;
-              for_inflows(state, view, [&](const Inflow<dim>& f) {
-                const Real dm = passed_water(state, cell, f);
-                cell.gain += dm;
-                if (cell.kind == CellKind::free && f.face->kind == FaceKind::to_free &&
-                    std::fabs(f.flux) > most) {
-                  most = std::fabs(f.flux);
-                  cell.ground_axis = static_cast<std::int8_t>(f.axis);
-                  cell.ground = f.place;
-                }
-                if (!f.from && f.face->held >= 0 && !f.face->fed) {
-                  const std::size_t at = (static_cast<std::size_t>(slot) * held +
-                                          static_cast<std::size_t>(f.face->held)) *
-                                         2;
-                  nodes.ledger_in[at + (dm > 0 ? 0 : 1)] += std::fabs(dm);
-                }
-              });
+              find_gain(state, CellView<M>(state, local, slot), cell);
+              fill_submerged_pores(state, cell);
+              if constexpr (is_unsaturated<M>) find_closing(state, cell);
             });
   for (std::size_t h = 0; h < held; ++h)
     for (std::size_t s = 0; s < static_cast<std::size_t>(state.grid.slots()); ++s) {
@@ -334,49 +408,43 @@ void find_gains(State<M>& state) {
     }
 }
 
-/// Pores of soil that free water fills for the most part (a free cell) stay full: what they lack or
-/// have too much passes between them and the free points of the cell.
+/// Step 8: what the collected fluxes bring to cells, films and submerged pores.
 template <class M>
-void fill_submerged_pores(State<M>& state) {
-  for_pressure_cells(state, [&](Cell<State<M>::dim>& cell, std::int32_t, int) {
-    cell.pore_gain = 0;
-    if (cell.kind != CellKind::free || !(cell.soil_pores > 0)) return;
-    const Real full = state.water.density * cell.soil_pores *
-                      std::exp(max(0.0, cell.pressure) / state.water.bulk_modulus);
-    const Real wanted = full - cell.soil_water;
-    cell.pore_gain = min(wanted, 0.5 * max(0.0, cell.water + cell.gain));
-    cell.gain -= cell.pore_gain;
-  });
-}
-
-/// How fast the air-filled pores of the cells close: the next step must see their end coming.
-template <class M>
-void find_closing(State<M>& state) {
-  for_pressure_cells(state, [&](Cell<State<M>::dim>& cell, std::int32_t, int) {
-    const Real bulk = cell.soil_pores / cell.soil_porosity;
-    cell.closing = cell.gain / (state.water.density * state.dt) - bulk * cell.skeleton_rate;
-  });
-}
-
-/// Step 8: what the fluxes bring to cells, films and submerged pores.
-template <class M>
-void book_fluxes(State<M>& state) {
+void book_collected_fluxes(State<M>& state) {
   limit_donors(state);
   find_gains(state);
   settle_films(state);
-  fill_submerged_pores(state);
-  if constexpr (is_unsaturated<M>) find_closing(state);
+}
+
+/// The same of the faces as they are.
+template <class M>
+void book_fluxes(State<M>& state) {
+  collect_fluxes(state);
+  book_collected_fluxes(state);
+}
+
+/// Rates of all cells and fluxes of all faces: both read the velocities of the nodes around.
+template <class M>
+void find_rates_and_fluxes(State<M>& state) {
+  for_cells(state.grid, state.options.threads,
+            [&](std::int32_t e, const Index<State<M>::dim>& local, int slot, int) {
+              const CellView<M> view(state, local, slot);
+              if (state.nodes.dof[static_cast<std::size_t>(e)] == e) find_rates(state, view);
+              find_fluxes(state, view);
+            });
 }
 
 /// Step 4 (fluxes) and 8 (gains of cells).
 template <class M>
 void exchange_water(State<M>& state) {
-  find_rates(state);
   if constexpr (has_skeleton<M>) {
-    if (state.frozen) return;
-    find_fluxes(state);
-    book_fluxes(state);
+    if (!state.frozen) {
+      find_rates_and_fluxes(state);
+      book_collected_fluxes(state);
+      return;
+    }
   }
+  find_rates(state);
 }
 
 }  // namespace vadose::kernel

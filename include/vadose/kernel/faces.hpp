@@ -4,6 +4,8 @@
 /// \file
 /// Step 4: faces between cells: head gradient, upstream saturation, conductivity.
 
+#include <algorithm>
+
 #include <vadose/kernel/face_mobility.hpp>
 #include <vadose/kernel/rain.hpp>
 
@@ -19,9 +21,7 @@ struct CellBatch {
   /// One number of each cell; that of the first where there are fewer.
   template <class F>
   Lanes numbers(F&& f) const noexcept {
-    alignas(64) double values[lane_count];
-    for (int l = 0; l < lane_count; ++l) values[l] = f(*cell[l < count ? l : 0]);
-    return Lanes::load(values);
+    return lanes_of([&](int l) { return f(*cell[l < count ? l : 0]); });
   }
 };
 
@@ -432,6 +432,7 @@ void find_reference_pressures(State<M>& state) {
               if (nodes.dof[static_cast<std::size_t>(e)] != e || cell.kind != CellKind::soil)
                 return;
               const CellView<M> view(state, local, slot);
+              if (!cell.at_air && cell.members == 1 && view.has_neighbours()) return;
               // A cell without a cut has walls for its surface and no surface_point.
               const bool cut = cell.at_air || cell.members > 1;
               const Real own =
@@ -460,16 +461,18 @@ template <class M>
 void connect_cells(State<M>& state) {
   constexpr int dim = State<M>::dim;
   if (state.films) find_columns(state);
-  parallel_for(static_cast<std::size_t>(state.grid.slots()), state.options.threads,
-               [&](std::size_t s, int) {
-                 FaceBatch<M> batch;
-                 FaceFlux* face = &state.nodes.face[s * Block<dim>::cells * dim];
-                 for_cube<dim>(0, Block<dim>::edge, [&](const Index<dim>& local) {
-                   const CellView<M> view(state, local, static_cast<int>(s));
-                   for (int d = 0; d < dim; ++d) find_face(state, view, d, *face++, batch);
-                 });
-                 find_means(state, batch);
-               });
+  parallel_for(
+      static_cast<std::size_t>(state.grid.slots()), state.options.threads, [&](std::size_t s, int) {
+        FaceBatch<M> batch[dim];  // one for each axis: across some, pressures hardly differ
+        const std::size_t first = s * Block<dim>::cells * dim;
+        FaceFlux* face = &state.nodes.face[first];
+        std::fill_n(&state.nodes.flux[first], Block<dim>::cells * dim, 0.0);
+        for_cube<dim>(0, Block<dim>::edge, [&](const Index<dim>& local) {
+          const CellView<M> view(state, local, static_cast<int>(s));
+          for (int d = 0; d < dim; ++d) find_face(state, view, d, *face++, batch[d]);
+        });
+        for (auto& faces : batch) find_means(state, faces);
+      });
   share_supplies(state);
   find_reference_pressures(state);
 }

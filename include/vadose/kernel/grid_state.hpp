@@ -56,57 +56,66 @@ enum class CellKind : std::uint8_t {
   free,  ///< free water: pressure carried by its points
 };
 
-/// Pressure unknown of a cell and its surroundings.
+/// Pressure unknown of a cell and its surroundings. Passes over the cells wait for memory: what one pass
+/// needs lies together, in groups that fill cache lines in three dimensions.
 template <int Dim>
-struct Cell {
-  Real pressure = 0;       ///< p_c at the centroid [Pa]
-  Real saturation = 0;     ///< S_c = M_c / (rho_l(p) sum n V), at most 1
-  Real porosity = 1;       ///< pore-weighted mean n
-  Real pore_volume = 0;    ///< sum n V [m3]
-  Real soil_share = 0;     ///< bulk volume of soil / water-bearing volume [-]
-  Real soil_porosity = 1;  ///< of the soil in the cell, also where free water fills most of it
-  Real soil_pores = 0;     ///< pore volume of that soil [m3]
-  Real soil_water = 0;     ///< pore water of that soil [kg]
-  Real pore_gain = 0;      ///< water the pores of a free cell take from its free points [kg]
-  Real conductivity = 0;   ///< k(S_c, n) [m/s]
-  Real saturated_conductivity = 0;  ///< k(1, n) [m/s]
-  Real water = 0;                   ///< M_c [kg]
-  Real content = 0;                 ///< water volume at reference density, M / rho_l0 [m3]
-  Real storage = 0;                 ///< sum V d(theta)/dp [m3/Pa]
-  Real modulus = 0;                 ///< K* = S / (S/K + S_p) of soil [Pa]
-  Real low = 0, high = 0;           ///< bracket of the pressure while it is sought [Pa]
-  Real centroid[Dim] = {};          ///< of the water-bearing volume [m]
-  Real quad_volume = 0;             ///< volume the pressure acts in, f V_c [m3]
-  Real quad_point[Dim] = {};        ///< where: cell centre, or centroid of a cut cell [m]
-  Real quad_pressure = 0;           ///< pressure there [Pa]
-  Real raw_fill = 0;                ///< filled fraction of the cell by itself
-  Real fill = 0;                    ///< filled fraction, slivers included; 1 away from air
-  Real surface_point[Dim] = {};     ///< on the plane that cuts a cell at air [m]
-  /// Liquid pressure at the surface of a cell at air, across each axis: as held there, else that of the
-  /// cell itself (a closed surface carries it) [Pa].
-  Real reference_pressure[Dim] = {};
-  Real reference_share[Dim] = {};  ///< part of it that follows the pressure of the cell [-]
-  Real rate = 0;                   ///< div q of free water [1/s]
-  Real skeleton_rate = 0;          ///< div v^s [1/s]
-  Real mean_stress = 0;            ///< mean Bishop stress of the skeleton in the cell [Pa]
-  Real gain = 0;                   ///< water received in the step [kg]
-  /// Of air-filled pores in the last step, NaN: not known; in unsaturated models [m3/s].
-  Real closing = unset;
-  Real change = 0;               ///< of the pressure over the step, where solved for [Pa]
-  Real limit = 1;                ///< donor limiter on outflow
-  Real mean_velocity[Dim] = {};  ///< of the water it holds, new, mass weighted [m/s]
-  Real momentum_gain[Dim] = {};  ///< velocity change by exchanged momentum [m/s]
-  Real near_water = 0;           ///< free water weighted by its nearness to `ground` [kg]
-  Real ground = 0;               ///< place on its axis of the face to soil that passes most [m]
-  std::int8_t ground_axis = -1;  ///< across that face; -1: none, all water counts as near
+struct alignas(64) Cell {
   CellKind kind = CellKind::none;
+  std::uint8_t material = 0;   ///< of the largest bulk volume
+  std::uint8_t members = 1;    ///< itself and the slivers that share its pressure
   bool at_air = false;         ///< a face of the cell is open to air
   bool drop = false;           ///< stands alone: no force, no volume change
   bool has_reference = false;  ///< reference_pressure applies
   bool is_fed = false;  ///< more free water comes through `ground` and other faces than leaves
   bool solved = false;  ///< an implicit solution gave `change`
-  std::uint8_t material = 0;  ///< of the largest bulk volume
-  std::uint8_t members = 1;   ///< itself and the slivers that share its pressure
+  std::int8_t ground_axis =
+      -1;                 ///< across the face at `ground`; -1: none, all water counts as near
+  Real raw_fill = 0;      ///< filled fraction of the cell by itself
+  Real pressure = 0;      ///< p_c at the centroid [Pa]
+  Real saturation = 0;    ///< S_c = M_c / (rho_l(p) sum n V), at most 1
+  Real porosity = 1;      ///< pore-weighted mean n
+  Real conductivity = 0;  ///< k(S_c, n) [m/s]
+  Real saturated_conductivity = 0;  ///< k(1, n) [m/s]
+
+  Real centroid[Dim] = {};  ///< of the water-bearing volume [m]
+  Real pore_volume = 0;     ///< sum n V [m3]
+  Real soil_pores = 0;      ///< pore volume of the soil in the cell, as soil_porosity [m3]
+  Real storage = 0;         ///< sum V d(theta)/dp [m3/Pa]
+  Real content = 0;         ///< water volume at reference density, M / rho_l0 [m3]
+  Real modulus = 0;         ///< K* = S / (S/K + S_p) of soil [Pa]
+
+  Real quad_point[Dim] =
+      {};                  ///< where the pressure acts: cell centre, or centroid of a cut cell [m]
+  Real quad_volume = 0;    ///< volume the pressure acts in, f V_c [m3]
+  Real quad_pressure = 0;  ///< pressure at quad_point [Pa]
+  Real soil_share = 0;     ///< bulk volume of soil / water-bearing volume [-]
+  Real soil_porosity = 1;  ///< of the soil in the cell, also where free water fills most of it
+  Real mean_stress = 0;    ///< mean Bishop stress of the skeleton in the cell [Pa]
+
+  Real water = 0;                ///< M_c [kg]
+  Real limit = 1;                ///< donor limiter on outflow
+  Real gain = 0;                 ///< water received in the step [kg]
+  Real mean_velocity[Dim] = {};  ///< of the water it holds, new, mass weighted [m/s]
+  Real skeleton_rate = 0;        ///< div v^s [1/s]
+  /// Of air-filled pores in the last step, NaN: not known; in unsaturated models [m3/s].
+  Real closing = unset;
+
+  Real momentum_gain[Dim] = {};  ///< velocity change by exchanged momentum [m/s]
+  Real low = 0, high = 0;        ///< bracket of the pressure while it is sought [Pa]
+  Real soil_water = 0;           ///< pore water in soil_pores [kg]
+  Real pore_gain = 0;            ///< water the pores of a free cell take from its free points [kg]
+  Real rate = 0;                 ///< div q of free water [1/s]
+
+  Real fill = 0;                 ///< filled fraction, slivers included; 1 away from air
+  Real surface_point[Dim] = {};  ///< on the plane that cuts a cell at air [m]
+  /// Liquid pressure at the surface of a cell at air, across each axis: as held there, else that of the
+  /// cell itself (a closed surface carries it) [Pa].
+  Real reference_pressure[Dim] = {};
+  Real change = 0;  ///< of the pressure over the step, of soil or where solved for [Pa]
+
+  Real reference_share[Dim] = {};  ///< part of reference_pressure that follows that of the cell [-]
+  Real near_water = 0;             ///< free water weighted by its nearness to `ground` [kg]
+  Real ground = 0;                 ///< place on its axis of the face to soil that passes most [m]
 };
 
 /// What a face between two cells is.
@@ -117,25 +126,25 @@ enum class FaceKind : std::uint8_t {
   surface,  ///< soil and air, or a wall held at a pressure
 };
 
-/// The lower face of a cell along one axis.
+/// The lower face of a cell along one axis. First what every pass over the faces reads.
 struct FaceFlux {
-  Real head_gradient = 0;  ///< H = (dp - rho g dx) / d, upwards along the axis [Pa/m]
-  Real saturation = 0;     ///< of the upstream side
-  Real conductivity = 0;   ///< Kirchhoff blend [m/s]
-  Real held_pressure = 0;  ///< at an open surface or wall [Pa]
-  Real distance = 0;       ///< over which H is taken [m]
-  Real outward = 1;  ///< factor of the conductivity of the cell on the way to its outer face [-]
-  Real area = 0;     ///< [m2]
-  Real flux = 0;     ///< volume per time, upwards along the axis, times A [m3/s]
   FaceKind kind = FaceKind::closed;
-  std::int16_t held = -1;   ///< which HeldPressure; -1: none
   bool one_way = false;     ///< lets water out only
   bool fed = false;         ///< ground under rain or a film, which takes what comes out
   bool wetted = false;      ///< and feeds it
   bool thirsty = false;     ///< the soil drinks all it is given: its surface stays under suction
-  Real supply = 0;          ///< what a fed or thirsty face can take at most [m3/s]
   bool soil_below = false;  ///< of a surface or to_free face: the soil is on the lower side
   bool from_above = false;  ///< of an inside face: the upper cell is upstream as the step begins
+  std::int16_t held = -1;   ///< which HeldPressure; -1: none
+  Real head_gradient = 0;   ///< H = (dp - rho g dx) / d, upwards along the axis [Pa/m]
+  Real saturation = 0;      ///< of the upstream side
+  Real conductivity = 0;    ///< Kirchhoff blend [m/s]
+  Real area = 0;            ///< [m2]
+  Real flux = 0;            ///< volume per time, upwards along the axis, times A [m3/s]
+  Real distance = 0;        ///< over which H is taken [m]
+  Real held_pressure = 0;   ///< at an open surface or wall [Pa]
+  Real outward = 1;  ///< factor of the conductivity of the cell on the way to its outer face [-]
+  Real supply = 0;   ///< what a fed or thirsty face can take at most [m3/s]
 
   /// A surface that lets no water through, as far as pressures and nodes are concerned.
   bool is_shut() const noexcept {
@@ -181,10 +190,12 @@ struct GridState {
   /// Pressure of the water of a cell at the origin, p_c - rho_l g . x_c, by the cell whose pressure it
   /// uses; one per cell [Pa].
   std::vector<Real> head;
-  std::vector<Real> filling;      ///< mass per pore volume of saturated soil, else 0 [kg/m3]
-  std::vector<Real> rate;         ///< div v^s of the same cell; NaN where there is none [1/s]
+  std::vector<Real> soil;     ///< 1 for cells of soil, 0 for others: what points read of them [-]
+  std::vector<Real> filling;  ///< mass per pore volume of saturated soil, else 0 [kg/m3]
+  std::vector<Real> rate;     ///< div v^s of the same cell; NaN where there is none [1/s]
   std::vector<std::int32_t> dof;  ///< entry of the cell whose pressure a cell uses, -1: none
   std::vector<FaceFlux> face;     ///< Dim per cell
+  std::vector<Real> flux;         ///< FaceFlux::flux of them, as loops over neighbours read it
   std::vector<CarriedNode<Dim>> carried;  ///< in ascending order, once per carrying cell
   std::vector<std::uint16_t> node_flags;  ///< walls and prescribed motion, see NodeFlag
 };

@@ -66,12 +66,8 @@ VADOSE_INLINE SymTensor<Lanes, State<M>::stress_size> load_stress(const State<M>
 template <class M>
 VADOSE_INLINE Lanes in_soil_cells(const State<M>& state, const CellFinder<State<M>::dim>& cells,
                                   const std::int32_t* entries) noexcept {
-  alignas(64) double soil[lane_count];
-  for (int l = 0; l < lane_count; ++l) {
-    const auto e = static_cast<std::size_t>(entries[cells.index[l]]);
-    soil[l] = state.nodes.cell[e].kind == CellKind::soil ? 1 : 0;
-  }
-  return Lanes::load(soil);
+  return lanes_of(
+      [&](int l) { return state.nodes.soil[static_cast<std::size_t>(entries[cells.index[l]])]; });
 }
 
 /// Adds one batch of solid points to a tile of nodes. With MeanByCell the mean stress goes to the
@@ -165,8 +161,13 @@ void map_solid(State<M>& state) {
     Tile<dim>& tile = state.tile(thread, 0);
     Tile<dim>& cell_sums = state.tile(thread, 1);
     const TileFrame<dim> frame = tile_frame(state.grid, range.slot);
+    ComingRecords<dim> nodes(state.grid, range.slot, state.nodes.solid_in);
+    ComingRecords<dim> sums(state.grid, range.slot,
+                            MeanByCell ? state.nodes.content : state.nodes.solid_in);
     for (std::size_t b = range.begin; b < range.end; ++b) {
       state.solid.prefetch(b + 2);
+      nodes.ask_for_some();
+      if constexpr (MeanByCell) sums.ask_for_some();
       map_solid_batch<MeanByCell>(state, b, frame, state.grid.tile(range.slot), tile.record,
                                   cell_sums);
     }
@@ -257,8 +258,10 @@ void map_liquid(State<M>& state) {
   for_blocks_adding(state.liquid, state.options.threads, [&](const BatchRange& range, int thread) {
     Tile<dim>& tile = state.tile(thread);
     const TileFrame<dim> frame = tile_frame(state.grid, range.slot);
+    ComingRecords<dim> coming(state.grid, range.slot, state.nodes.liquid_in);
     for (std::size_t b = range.begin; b < range.end; ++b) {
       state.liquid.prefetch(b + 2);
+      coming.ask_for_some();
       map_liquid_batch(state, b, frame, range.slot, tile.record);
     }
     tile.add_to(state.grid, range.slot, state.nodes.liquid_in);

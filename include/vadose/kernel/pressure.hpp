@@ -51,10 +51,8 @@ void solve_saturated(State<M>& state) {
 template <class M>
 VADOSE_INLINE Lanes cell_rates(const State<M>& state, const CellFinder<State<M>::dim>& cells,
                                const std::int32_t* entries, const Lanes& otherwise) noexcept {
-  alignas(64) double rate[lane_count];
-  for (int l = 0; l < lane_count; ++l)
-    rate[l] = state.nodes.rate[static_cast<std::size_t>(entries[cells.index[l]])];
-  const Lanes found = Lanes::load(rate);
+  const Lanes found = lanes_of(
+      [&](int l) { return state.nodes.rate[static_cast<std::size_t>(entries[cells.index[l]])]; });
   return select(found == found, found, otherwise);
 }
 
@@ -88,16 +86,22 @@ VADOSE_INLINE Lanes volume_stretch(const State<M>& state, const CellFinder<State
   const Lanes limit =
       max(Lanes(1.0), (Lanes(1.0) - porosity) * Lanes(1 / (1 - dispersed_porosity)));
   if (!any(limit < follows)) return follows;
-  alignas(64) double pressure[lane_count];
-  for (int l = 0; l < lane_count; ++l) {
+  const Lanes pressure = lanes_of([&](int l) -> Real {
     const std::int32_t owner = state.nodes.dof[static_cast<std::size_t>(entries[cells.index[l]])];
-    pressure[l] = owner < 0 ? 0 : state.nodes.cell[static_cast<std::size_t>(owner)].pressure;
-  }
-  return select(Lanes(0.0) < Lanes::load(pressure), follows, min(follows, limit));
+    return owner < 0 ? 0 : state.nodes.cell[static_cast<std::size_t>(owner)].pressure;
+  });
+  return select(Lanes(0.0) < pressure, follows, min(follows, limit));
 }
 
-/// Pressures of the cells as the points read them, in the blocks that are sought.
-template <class M>
+/// Whether the search for the pressure of a cell is over.
+template <int Dim>
+bool is_found(const Cell<Dim>& cell) noexcept {
+  return cell.low > cell.high;
+}
+
+/// Pressures of the cells as the points read them, in the blocks that are sought; with `Open`, NaN for
+/// those that are found.
+template <bool Open = false, class M>
 void find_heads(State<M>& state) {
   constexpr int dim = State<M>::dim;
   constexpr std::size_t cells = Block<dim>::cells;
@@ -111,7 +115,7 @@ void find_heads(State<M>& state) {
                    nodes.head[i] = 0;
                    if (owner < 0) continue;
                    const auto& cell = nodes.cell[static_cast<std::size_t>(owner)];
-                   Real head = cell.pressure;
+                   Real head = Open && is_found(cell) ? unset : cell.pressure;
                    for (int d = 0; d < dim; ++d) head -= weight[d] * cell.centroid[d];
                    nodes.head[i] = head;
                  }
@@ -123,28 +127,28 @@ template <class M>
 VADOSE_INLINE Lanes pressures_at(const State<M>& state, const CellFinder<State<M>::dim>& cells,
                                  const std::int32_t* entries,
                                  const Lanes (&x)[State<M>::dim]) noexcept {
-  alignas(64) double head[lane_count];
-  for (int l = 0; l < lane_count; ++l)
-    head[l] = state.nodes.head[static_cast<std::size_t>(entries[cells.index[l]])];
-  Lanes p = Lanes::load(head);
+  Lanes p = lanes_of(
+      [&](int l) { return state.nodes.head[static_cast<std::size_t>(entries[cells.index[l]])]; });
   for (int d = 0; d < State<M>::dim; ++d) p += Lanes(state.water.density * state.gravity[d]) * x[d];
   return p;
 }
 
 /// Sums content and storage of the pore water at the trial pressures of the cells; `Stretched`: in
-/// the volume after the step.
-template <bool Stretched = false, class M>
+/// the volume after the step; `Open`: only of cells whose pressure is not found yet.
+template <bool Stretched = false, bool Open = false, class M>
 void sum_content(State<M>& state) {
   constexpr int dim = State<M>::dim;
   const Lanes over_modulus(1 / state.water.bulk_modulus);
-  find_heads(state);
+  find_heads<Open>(state);
   if constexpr (Stretched) spread_rates(state);
   for_blocks_adding(state.liquid, state.options.threads, [&](const BatchRange& range, int thread) {
     if (!state.nodes.retry[static_cast<std::size_t>(range.slot)]) return;
     Tile<dim>& tile = state.tile(thread);
     const TileFrame<dim> frame = tile_frame(state.grid, range.slot);
     const std::int32_t* entries = state.grid.tile(range.slot);
+    ComingRecords<dim> coming(state.grid, range.slot, state.nodes.content);
     for (std::size_t b = range.begin; b < range.end; ++b) {
+      coming.ask_for_some();
       const int group = state.liquid.group(b);
       if (group == state.free_group()) continue;
       Lanes x[dim], record[lane_count];
@@ -152,7 +156,12 @@ void sum_content(State<M>& state) {
       CellFinder<dim> cells;
       cells.find(frame, x);
       for (auto& r : record) r = Lanes(0.0);
-      const Lanes p = pressures_at(state, cells, entries, x);
+      Lanes p = pressures_at(state, cells, entries, x);
+      if constexpr (Open) {
+        const LaneMask wanted = p == p;
+        if (!any(wanted)) continue;
+        p = select(wanted, p, Lanes(0.0));
+      }
       Lanes porosity = state.liquid.load(field::porosity, b);
       Lanes volume = state.liquid.load(field::volume, b);
       if constexpr (Stretched) {
@@ -229,6 +238,30 @@ Record member_sums(const CellView<M>& view, const AlignedVector<Record>& records
   return total;
 }
 
+/// One step of the search in every cell of a block; marks the block if one has to go on.
+template <class M>
+void improve_pressures(State<M>& state, int slot) {
+  constexpr int dim = State<M>::dim;
+  auto& nodes = state.nodes;
+  std::int32_t e = slot * Block<dim>::cells - 1;
+  for_cube<dim>(0, Block<dim>::edge, [&](const Index<dim>& local) {
+    const auto i = static_cast<std::size_t>(++e);
+    auto& cell = nodes.cell[i];
+    if (nodes.dof[i] != e || cell.kind != CellKind::soil || is_found(cell)) return;
+    const Record sums = member_sums(CellView<M>(state, local, slot), nodes.content);
+    const Real target = cell.water / state.water.density;
+    const Real floor = state.soils[cell.material].pressure_floor;
+    if (state.frozen) cell.storage = sums[lane::storage];
+    cell.content = state.frozen ? sums[lane::content] : target;
+    const bool found = state.frozen || improve_pressure(cell, sums[lane::content],
+                                                        sums[lane::storage], target, floor);
+    if (found)
+      cell.low = 1, cell.high = 0;  // not touched again
+    else
+      nodes.retry[static_cast<std::size_t>(slot)] = 1;
+  });
+}
+
 /// Pressure of unsaturated cells: sum V theta(p_c + rho g (x - x_c), n) = M / rho_l0.
 template <class M>
 void solve_unsaturated(State<M>& state) {
@@ -247,28 +280,16 @@ void solve_unsaturated(State<M>& state) {
   });
   for (int pass = 0; pass < max_passes; ++pass) {
     clear_content(state);
-    sum_content(state);
+    if (pass == 0)
+      sum_content(state);
+    else
+      sum_content<false, true>(state);
     nodes.sought = nodes.retry;
     std::fill(nodes.retry.begin(), nodes.retry.end(), char{0});
-    for_cells(state.grid, state.options.threads,
-              [&](std::int32_t e, const Index<dim>& local, int slot, int) {
-                const auto i = static_cast<std::size_t>(e);
-                auto& cell = nodes.cell[i];
-                if (nodes.dof[i] != e || cell.kind != CellKind::soil) return;
-                if (!nodes.sought[static_cast<std::size_t>(slot)] || cell.low > cell.high) return;
-                const Record sums = member_sums(CellView<M>(state, local, slot), nodes.content);
-                const Real target = cell.water / state.water.density;
-                const Real floor = state.soils[cell.material].pressure_floor;
-                if (state.frozen) cell.storage = sums[lane::storage];
-                cell.content = state.frozen ? sums[lane::content] : target;
-                const bool found =
-                    state.frozen ||
-                    improve_pressure(cell, sums[lane::content], sums[lane::storage], target, floor);
-                if (found)
-                  cell.low = 1, cell.high = 0;  // found: not touched again
-                else
-                  nodes.retry[static_cast<std::size_t>(slot)] = 1;
-              });
+    parallel_for(static_cast<std::size_t>(state.grid.slots()), state.options.threads,
+                 [&](std::size_t slot, int) {
+                   if (nodes.sought[slot]) improve_pressures(state, static_cast<int>(slot));
+                 });
     bool any = false;
     for (const char r : nodes.retry) any = any || r;
     if (!any) break;

@@ -23,6 +23,13 @@ struct Tile {
     for (int i = 0; i < Block<Dim>::tile_size; ++i)
       record[i] = from[static_cast<std::size_t>(entry[i])];
   }
+  /// The same with lanes 0 .. 3 in both halves, as FlowGather reads them.
+  void read_twice(const BlockGrid<Dim>& grid, int slot,
+                  const AlignedVector<Record>& from) noexcept {
+    const std::int32_t* entry = grid.tile(slot);
+    for (int i = 0; i < Block<Dim>::tile_size; ++i)
+      low_twice(Lanes::load(from[static_cast<std::size_t>(entry[i])].value)).store(record[i].value);
+  }
   /// Adds what the tile gathered to the records of a slot and clears it.
   void add_to(const BlockGrid<Dim>& grid, int slot, AlignedVector<Record>& to) noexcept {
     const std::int32_t* entry = grid.tile(slot);
@@ -36,6 +43,34 @@ struct Tile {
     }
   }
 };
+
+/// Asks the cache, a few with every batch of points, for the records that a tile will be read from or added
+/// to once these points are done. Else each of them waits for memory: they lie apart, and the points that
+/// stream by drive them out of the cache.
+template <int Dim>
+class ComingRecords {
+ public:
+  ComingRecords(const BlockGrid<Dim>& grid, int slot, const AlignedVector<Record>& records) noexcept
+      : entry_(grid.tile(slot)), records_(records.data()) {}
+
+  VADOSE_INLINE void ask_for_some() noexcept {
+    for (int i = 0; i < per_batch && next_ < Block<Dim>::tile_size; ++i)
+      __builtin_prefetch(records_ + entry_[next_++], 0, 2);
+  }
+
+ private:
+  static constexpr int per_batch = 8;
+  const std::int32_t* entry_;
+  const Record* records_;
+  int next_ = 0;
+};
+
+/// Block whose points come after those of a range; the same where there is none.
+template <class Points>
+int next_slot(const Points& points, const BatchRange& range) noexcept {
+  const BatchRange* next = &range + 1;
+  return next == points.blocks().data() + points.blocks().size() ? range.slot : next->slot;
+}
 
 /// Calls f(block range, thread) for all blocks of points; blocks may be worked on together.
 template <class Points, class F>
@@ -323,6 +358,96 @@ struct Gather {
     value[l] = total;
     if constexpr (Slopes)
       for (int e = 0; e < Dim; ++e) slope[e][l] = along[e];
+  }
+};
+
+/// Sums over the nodes of eight points for what only moves with them: velocity and the stretching dv_e/dx_e
+/// along each axis, of a tile that was read twice.
+template <class Shape, int Dim>
+struct FlowGather {
+  Lanes velocity[Dim];
+  Lanes stretching[Dim];
+
+  VADOSE_INLINE void sum(const Stencil<Shape, Dim>& s, const Record* tile) noexcept {
+    if (s.shared)
+      sum_shared(s, tile + s.offset[0]);
+    else
+      sum_points(s, tile);
+  }
+
+ private:
+  static constexpr int n = Shape::support;
+  static constexpr int rows = Dim >= 2 ? n : 1, layers = Dim == 3 ? n : 1;
+
+  /// Eight points with the same nodes: each number of a node meets the weights of all points.
+  VADOSE_INLINE void sum_shared(const Stencil<Shape, Dim>& s, const Record* first) noexcept {
+    for (int c = 0; c < Dim; ++c) velocity[c] = stretching[c] = Lanes(0.0);
+    for (int k = 0; k < layers; ++k)
+      for (int j = 0; j < rows; ++j) {
+        const Record* row = first;
+        Lanes w(1.0), g[3] = {Lanes(0.0), Lanes(0.0), Lanes(0.0)};
+        if constexpr (Dim >= 2) {
+          row += j * BlockGrid<Dim>::tile_stride(1);
+          w = Lanes::load(s.weight[1][j]);
+          g[1] = Lanes::load(s.slope[1][j]);
+        }
+        if constexpr (Dim == 3) {
+          row += k * BlockGrid<Dim>::tile_stride(2);
+          g[2] = w * Lanes::load(s.slope[2][k]);
+          w *= Lanes::load(s.weight[2][k]);
+          g[1] *= Lanes::load(s.weight[2][k]);
+        }
+        Lanes sums[Dim], along(0.0);
+        for (auto& v : sums) v = Lanes(0.0);
+        for (int i = 0; i < n; ++i) {
+          const Lanes wi = Lanes::load(s.weight[0][i]);
+          for (int c = 0; c < Dim; ++c) sums[c] += Lanes(row[i][c]) * wi;
+          along += Lanes(row[i][0]) * Lanes::load(s.slope[0][i]);
+        }
+        for (int c = 0; c < Dim; ++c) velocity[c] += sums[c] * w;
+        stretching[0] += along * w;
+        for (int c = 1; c < Dim; ++c) stretching[c] += sums[c] * g[c];
+      }
+  }
+
+  /// Point by point: lanes 0 .. 3 take the velocity by the weights along every axis, lane 4 + e takes
+  /// component e by the slope along axis e and the weights along the others, so that both are one product
+  /// of sums along the axes.
+  VADOSE_INLINE void sum_points(const Stencil<Shape, Dim>& s, const Record* tile) noexcept {
+    Lanes total[lane_count];
+    for (int l = 0; l < lane_count; ++l) {
+      const Record* first = tile + s.offset[l];
+      Lanes factor[Dim][n];
+      for (int e = 0; e < Dim; ++e)
+        for (int i = 0; i < n; ++i) {
+          factor[e][i] = Lanes(s.weight[e][i][l]);
+          factor[e][i].set(4 + e, s.slope[e][i][l]);
+        }
+      total[l] = Lanes(0.0);
+      for (int k = 0; k < layers; ++k) {
+        Lanes layer(0.0);
+        for (int j = 0; j < rows; ++j) {
+          const Record* row = first;
+          if constexpr (Dim >= 2) row += j * BlockGrid<Dim>::tile_stride(1);
+          if constexpr (Dim == 3) row += k * BlockGrid<Dim>::tile_stride(2);
+          Lanes along(0.0);
+          for (int i = 0; i < n; ++i) along += Lanes::load(row[i].value) * factor[0][i];
+          if constexpr (Dim >= 2)
+            layer += along * factor[1][j];
+          else
+            layer = along;
+        }
+        if constexpr (Dim == 3)
+          total[l] += layer * factor[2][k];
+        else
+          total[l] = layer;
+      }
+    }
+    transpose(total);
+    for (int c = 0; c < Dim; ++c) {
+      velocity[c] = total[c];
+      stretching[c] = total[4 + c];
+    }
   }
 };
 

@@ -145,13 +145,14 @@ VADOSE_INLINE void update_velocity(const State<M>& state, Points& points, std::s
   }
 }
 
-/// Stretches GIMP half sizes along the axes, at most to half a cell (the three-node stencil).
+/// Stretches GIMP half sizes along the axes by rates dv_d/dx_d, at most to half a cell (the three-node
+/// stencil).
 template <class Points, int Dim>
-VADOSE_INLINE void update_half_sizes(Points& points, std::size_t b,
-                                     const Lanes (&gradient)[Dim][Dim], Real dt, Real h) noexcept {
+VADOSE_INLINE void update_half_sizes(Points& points, std::size_t b, const Lanes (&stretching)[Dim],
+                                     Real dt, Real h) noexcept {
   if constexpr (Points::fields::template has<field::HalfSize>) {
     for (int d = 0; d < Dim; ++d) {
-      const Lanes half = points.load(field::half_size, b, d) * exp(Lanes(dt) * gradient[d][d]);
+      const Lanes half = points.load(field::half_size, b, d) * exp(Lanes(dt) * stretching[d]);
       points.store(field::half_size, b, d, min(max(half, Lanes(1e-3 * h)), Lanes(0.5 * h)));
     }
   }
@@ -287,7 +288,9 @@ VADOSE_INLINE void update_solid_batch(State<M>& state, std::size_t b,
     report_trouble(state, points, b, solid_only, "porosity in (0, 1)", "solid",
                    Lanes(1.0) - mass / (Lanes(soil.material.solid_density) * volume));
   }
-  update_half_sizes(points, b, motion.gradient, dt, state.grid.cell_size());
+  Lanes stretching[dim];
+  for (int d = 0; d < dim; ++d) stretching[d] = motion.gradient[d][d];
+  update_half_sizes(points, b, stretching, dt, state.grid.cell_size());
   update_velocity(state, points, b, stencil, frame, x, tile, motion);
   move(state, points, b, "solid", motion.velocity, sums);
 }
@@ -303,8 +306,10 @@ void update_solid(State<M>& state) {
     const TileFrame<dim> frame = tile_frame(state.grid, range.slot);
     const std::int32_t* entries = state.grid.tile(range.slot);
     StepSums& sums = state.sums[static_cast<std::size_t>(thread)];
+    ComingRecords<dim> coming(state.grid, next_slot(state.solid, range), state.nodes.solid_out);
     for (std::size_t b = range.begin; b < range.end; ++b) {
       state.solid.prefetch(b + 2);
+      coming.ask_for_some();
       update_solid_batch<RateByCell>(state, b, frame, entries, tile.record, sums);
     }
   });
@@ -334,20 +339,58 @@ void share_gain(const State<M>& state, const Cell<State<M>::dim>& cell, Record& 
   }
 }
 
+/// Water that eight soil cells of one material would have to give off, over the pore volume squeezed out of
+/// them, to keep their pressure: S, and what their change of porosity does to the retention curve,
+/// n (1 - n) dS/dn [-].
+template <class M>
+Lanes squeeze_factors(const State<M>& state, const CellBatch<M>& batch) {
+  using C = Cell<State<M>::dim>;
+  const Lanes zero(0.0), one(1.0);
+  Lanes squeeze = batch.numbers([](const C& c) { return c.saturation; });
+  if constexpr (is_unsaturated<M> && is_deformable<M>) {
+    const Lanes p = batch.numbers([](const C& c) { return c.pressure; });
+    if (!any(p < zero)) return squeeze;
+    const Lanes n = max(batch.numbers([](const C& c) { return c.porosity; }), Lanes(1e-6));
+    const Lanes slope = swrc::porosity_slope<Lanes>(state.soils[batch.material].material.retention,
+                                                    max(-p, zero), n);
+    squeeze += select(p < zero, n * (one - n) * slope, zero);
+  }
+  return squeeze;
+}
+
 /// Change of the pressure of a soil cell in the step as its start foretells it [Pa]: by gained water, by
 /// squeezed pores and by what their change of porosity does to the retention curve. It starts the search
 /// for the pressure, which then needs one pass over the points instead of two.
 template <class M>
-Real predicted_change(const State<M>& state, const Cell<State<M>::dim>& cell) noexcept {
-  const Real n = max(cell.porosity, 1e-6);
-  Real squeeze = cell.saturation;
-  if constexpr (is_unsaturated<M> && is_deformable<M>)
-    if (cell.pressure < 0)
-      squeeze += n * (1 - n) *
-                 swrc::porosity_slope<Real>(state.soils[cell.material].material.retention,
-                                            -cell.pressure, n);
-  const Real squeezed = cell.skeleton_rate * state.dt * squeeze * cell.pore_volume / n;
+Real predicted_change(const State<M>& state, const Cell<State<M>::dim>& cell,
+                      Real squeeze) noexcept {
+  const Real squeezed =
+      cell.skeleton_rate * state.dt * squeeze * cell.pore_volume / max(cell.porosity, 1e-6);
   return (cell.gain / state.water.density - squeezed) / max(cell.storage, 1e-30);
+}
+
+/// Predicts the changes of the pressures of the soil cells of a block that no implicit solution gave.
+template <class M>
+void predict_changes(State<M>& state, std::size_t slot) {
+  constexpr std::size_t cells = Block<State<M>::dim>::cells;
+  auto& nodes = state.nodes;
+  CellBatch<M> batch;
+  const auto finish = [&] {
+    if (batch.count == 0) return;
+    const Lanes squeeze = squeeze_factors(state, batch);
+    for (int l = 0; l < batch.count; ++l)
+      batch.cell[l]->change = predicted_change(state, *batch.cell[l], squeeze[l]);
+    batch.count = 0;
+  };
+  for (std::size_t i = slot * cells; i < (slot + 1) * cells; ++i) {
+    auto& cell = nodes.cell[i];
+    if (nodes.dof[i] != static_cast<std::int32_t>(i)) continue;
+    if (cell.kind != CellKind::soil || cell.solved) continue;
+    if (batch.count == lane_count || cell.material != batch.material) finish();
+    batch.material = cell.material;
+    batch.cell[batch.count++] = &cell;
+  }
+  finish();
 }
 
 /// What the pore water of a cell takes, and its pressure after the step as heads are kept.
@@ -358,11 +401,7 @@ Real find_share(const State<M>& state, const Cell<State<M>::dim>& cell, Record& 
   if (cell.kind == CellKind::soil) {
     share_gain(state, cell, share);
     for (int d = 0; d < dim; ++d) share[lane::velocity_gain + d] = cell.momentum_gain[d];
-    if (cell.solved) {
-      p += cell.change;
-    } else {
-      p += predicted_change(state, cell);
-    }
+    p += cell.change;
   } else if (cell.pore_gain > 0) {
     share[lane::by_pores] = cell.pore_gain / cell.soil_pores;
   } else if (cell.pore_gain < 0) {
@@ -422,22 +461,35 @@ void find_mean_velocities(State<M>& state) {
 
 /// What leaves a cell takes the velocity of its water along, the mean where it arrives.
 template <class M>
-void find_momentum_gains(State<M>& state) {
+void find_momentum_gain(const State<M>& state, const CellView<M>& view,
+                        Cell<State<M>::dim>& cell) noexcept {
   constexpr int dim = State<M>::dim;
-  for_cells(state.grid, state.options.threads,
-            [&](std::int32_t e, const Index<dim>& local, int slot, int) {
-              if (state.nodes.dof[static_cast<std::size_t>(e)] != e) return;
-              auto& cell = state.nodes.cell[static_cast<std::size_t>(e)];
-              for_inflows(state, CellView<M>(state, local, slot), [&](const Inflow<dim>& f) {
-                const Real dm = f.from && f.flux > 0 ? passed_water(state, cell, f) : 0;
-                if (dm > 0)
-                  for (int d = 0; d < dim; ++d)
-                    cell.momentum_gain[d] +=
-                        dm * (f.from->mean_velocity[d] - cell.mean_velocity[d]);
-              });
-              const Real after = cell.water + cell.gain;
-              for (Real& v : cell.momentum_gain) v = after > 0 ? v / after : 0;
-            });
+  for_collected_inflows(state, view, [&](const Inflow<dim>& f) {
+    const Real dm = f.from && f.flux > 0 ? passed_water(state, cell, f) : 0;
+    if (dm > 0)
+      for (int d = 0; d < dim; ++d)
+        cell.momentum_gain[d] += dm * (f.from->mean_velocity[d] - cell.mean_velocity[d]);
+  });
+  const Real after = cell.water + cell.gain;
+  for (Real& v : cell.momentum_gain) v = after > 0 ? v / after : 0;
+}
+
+/// What points need to know of every cell before its shares: momentum gained, change of pressure.
+template <class M>
+void find_changes(State<M>& state) {
+  constexpr int dim = State<M>::dim;
+  parallel_for(
+      static_cast<std::size_t>(state.grid.slots()), state.options.threads, [&](std::size_t s, int) {
+        const int slot = static_cast<int>(s);
+        std::int32_t e = slot * Block<dim>::cells;
+        for_cube<dim>(0, Block<dim>::edge, [&](const Index<dim>& local) {
+          const auto i = static_cast<std::size_t>(e);
+          if (state.nodes.dof[i] == e)
+            find_momentum_gain(state, CellView<M>(state, local, slot), state.nodes.cell[i]);
+          ++e;
+        });
+        predict_changes(state, s);
+      });
 }
 
 /// The shares of all cells, as points read them.
@@ -488,10 +540,9 @@ VADOSE_INLINE void exchange_batch(State<M>& state, std::size_t b,
   transpose(share);
   const Lanes mass = points.load(field::mass, b);
   const Lanes volume = points.load(field::volume, b);
-  alignas(64) double fillings[lane_count];
-  for (int l = 0; l < lane_count; ++l)
-    fillings[l] = state.nodes.filling[static_cast<std::size_t>(entries[cells.index[l]])];
-  const Lanes filling = Lanes::load(fillings);
+  const Lanes filling = lanes_of([&](int l) {
+    return state.nodes.filling[static_cast<std::size_t>(entries[cells.index[l]])];
+  });
   const Lanes pores = volume * points.load(field::porosity, b);
   const Lanes held = select(volume > Lanes(0.0), mass, Lanes(0.0));
   const Lanes by_mass = held * share[lane::by_mass];
@@ -716,16 +767,16 @@ VADOSE_INLINE void carry_pore_water(State<M>& state, std::size_t b,
     load_half_sizes(points, b, half);
     Stencil<typename M::Shape, dim> skeleton;
     skeleton.evaluate(frame, x, half);
-    PointMotion<dim> carried;
-    interpolate<true>(skeleton, solid, carried);
+    FlowGather<typename M::Shape, dim> carried;
+    carried.sum(skeleton, solid);
     Lanes trace = carried.velocity[0] * over_radius<typename State<M>::Kinematics, dim>(x, Real(0));
-    for (int d = 0; d < dim; ++d) trace += carried.gradient[d][d];
+    for (int d = 0; d < dim; ++d) trace += carried.stretching[d];
     const Lanes rate = cell_rates(state, cells, entries, trace);
     const Lanes n = points.load(field::porosity, b);
     const Lanes stretch = volume_stretch(state, cells, entries, n, Lanes(state.dt) * rate);
     points.store(field::volume, b, points.load(field::volume, b) * stretch);
     points.store(field::porosity, b, Lanes(1.0) - (Lanes(1.0) - n) / stretch);
-    update_half_sizes(points, b, carried.gradient, state.dt, state.grid.cell_size());
+    update_half_sizes(points, b, carried.stretching, state.dt, state.grid.cell_size());
     move(state, points, b, "liquid", carried.velocity, sums);
   }
 }
@@ -761,8 +812,12 @@ void update_liquid_velocities(State<M>& state) {
     Tile<dim>& cell_sums = state.tile(thread, 0);
     liquid.read(state.grid, range.slot, state.nodes.liquid_out);
     const TileFrame<dim> frame = tile_frame(state.grid, range.slot);
+    ComingRecords<dim> sums(state.grid, range.slot, state.nodes.content);
+    ComingRecords<dim> nodes(state.grid, next_slot(state.liquid, range), state.nodes.liquid_out);
     for (std::size_t b = range.begin; b < range.end; ++b) {
       state.liquid.prefetch(b + 2);
+      sums.ask_for_some();
+      nodes.ask_for_some();
       const LiquidPlace<M> at(state, b, range.slot, frame);
       if (at.is_free && state.frozen) continue;
       accelerate_liquid(state, at, frame, liquid.record);
@@ -778,7 +833,7 @@ void carry_liquid(State<M>& state) {
   constexpr int dim = State<M>::dim;
   for_blocks(state.liquid, state.options.threads, [&](const BatchRange& range, int thread) {
     Tile<dim>& solid = state.tile(thread, 3);
-    if constexpr (is_deformable<M>) solid.read(state.grid, range.slot, state.nodes.solid_out);
+    if constexpr (is_deformable<M>) solid.read_twice(state.grid, range.slot, state.nodes.solid_out);
     const TileFrame<dim> frame = tile_frame(state.grid, range.slot);
     const std::int32_t* entries = state.grid.tile(range.slot);
     StepSums& sums = state.sums[static_cast<std::size_t>(thread)];
@@ -821,7 +876,7 @@ void update_liquid(State<M>& state) {
   if constexpr (has_skeleton<M>) {
     update_liquid_velocities(state);
     find_mean_velocities(state);
-    find_momentum_gains(state);
+    find_changes(state);
     find_shares(state);
     carry_liquid(state);
   } else {

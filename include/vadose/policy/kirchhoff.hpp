@@ -81,8 +81,9 @@ class KirchhoffMean {
     const Lanes x_wet = unit * max(-wet, zero), x_dry = unit * max(-dry, zero);
     const Lanes positive = max(wet, zero) * unit;
     const Lanes width = max(positive + (x_dry - x_wet), Lanes(1e-300));
-    Lanes ratio = (positive + integral(x_wet, x_dry)) / width;
     const LaneMask close = (wet < zero) & (x_dry - x_wet <= Lanes(1e-5) * x_dry);
+    Lanes ratio(0.0);
+    if (!all(close)) ratio = (positive + integral(x_wet, x_dry)) / width;
     if (any(close)) ratio = select(close, relative<Lanes>(Lanes(0.5) * (x_wet + x_dry)), ratio);
     return saturated * select(dry < zero, ratio, one);
   }

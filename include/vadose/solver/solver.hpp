@@ -340,7 +340,9 @@ class Solver {
       n.cell.assign(size, {});
       n.dof.assign(size, -1);
       n.face.assign(size * dim, {});
+      n.flux.assign(size * dim, 0);
       n.head.assign(size, 0);
+      n.soil.assign(size, 0);
       n.rate.assign(size, unset);
       n.filling.assign(size, 0);
       n.near_sliver.assign(static_cast<std::size_t>(state_.grid.slots()), 1);
