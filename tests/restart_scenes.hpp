@@ -5,6 +5,7 @@
 // that keeps something between steps.
 
 #include <algorithm>
+#include <optional>
 #include <type_traits>
 
 #include <vadose/model/model.hpp>
@@ -109,25 +110,28 @@ auto any_options() {
 }
 
 /// A run of the scene is saved and taken up `times` times, `apart` steps after one another, each time
-/// in a solver that has gone elsewhere and with another number of threads. `quasi_static`: after steps
-/// that inertia limits.
+/// in a solver that has gone elsewhere and with another number of threads. `slow`: quasi-static,
+/// after steps that inertia limits or that the skeleton was solved for.
 template <class M, class Scheme>
 void check_any_restart(int times, int apart, Setting setting = Setting::whole,
-                       bool quasi_static = false) {
+                       std::optional<vadose::SlowSkeleton> slow = {}) {
   using S = vadose::Solver<M, Scheme>;
   const auto scene = any_scene<M>(setting);
   auto options = any_options<M, Scheme>();
   // Rigid soil has no other limit in its first semi-implicit step.
   if (std::is_same_v<Scheme, vadose::scheme::SemiImplicit>) options.dt_max = 0.05;
-  options.quasi_static.on = quasi_static;
+  const bool solves = slow == vadose::SlowSkeleton::implicit;
+  if (slow) options.quasi_static = {.on = true, .skeleton = *slow};
+  if (solves) options.quasi_static.inertia = 0.05, options.quasi_static.dynamic = 0.5;
   S run(scene, options);
-  bool by_inertia = false;  // has limited a step
-  for (int i = 0; quasi_static && i < 100; ++i) {
+  bool slowed = false;
+  for (int i = 0; slow && i < 1000 && !slowed; ++i) {
     REQUIRE(run.step().status == vadose::Status::ok);
-    by_inertia = by_inertia || run.last_step().limit == vadose::StepLimit::inertia;
+    const auto& step = run.last_step();
+    slowed = solves ? step.solve.skeleton : step.limit == vadose::StepLimit::inertia;
   }
   // In a column the water holds the skeleton.
-  if (M::Kinematics::dim > 1) CHECK(by_inertia == quasi_static);
+  if (M::Kinematics::dim > 1) CHECK(slowed == slow.has_value());
   options.threads = 2;
   S other(scene, options);
   REQUIRE(steps(other, 3));
@@ -191,7 +195,8 @@ void check_schemes() {
   if constexpr (vadose::has_liquid<M>) {
     check_any_restart<M, vadose::scheme::SemiImplicit>(20, 7);
     if constexpr (vadose::is_deformable<M>)
-      check_any_restart<M, vadose::scheme::SemiImplicit>(20, 7, Setting::no_pond, true);
+      for (const auto slow : {vadose::SlowSkeleton::implicit, vadose::SlowSkeleton::heavy})
+        check_any_restart<M, vadose::scheme::SemiImplicit>(20, 7, Setting::no_pond, slow);
     check_any_restart<M, vadose::scheme::PaperLiteral<>>(20, 17, Setting::no_pond);
     using Mended = vadose::scheme::PaperLiteral<all_mends>;
     check_any_restart<M, Mended>(20, 17,
