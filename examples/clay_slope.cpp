@@ -6,7 +6,8 @@
 //   clay_slope --rigid --end-time 5           the seepage alone, for Fig. 17
 //
 // What the paper does not say, and what is done here:
-// - The box: a foundation of 5 m, a crest of 10 m, 15 m before the toe; the slope is 11 m long (1:1.57).
+// - The box: a foundation of 5 m, a crest of 10 m, 15 m before the toe; the slope is 11 m long (1:1.57). The
+//   slide comes to the wall after 15 s: --foreland 45 gives it room.
 // - The start: suction of 500 kPa at the surface, below it that of water at rest under the surface.
 //   With k_r = 1e-7 it does not move in the time of the runs.
 // - k_sat = 5 m/s, as printed, wets 2 m in 0.08 s by Richards' equation; the 5 s of Fig. 17 need
@@ -39,17 +40,20 @@ namespace {
 
 using vd::Real;
 
-constexpr Real foundation = 5, height = 7, crest_x = 10, toe_x = 21, length = 36;  // [m]
+constexpr Real foundation = 5, height = 7, crest_x = 10, toe_x = 21;  // [m]
 constexpr Real top = foundation + height;
 constexpr Real solid_density = 2800, liquid_density = 1000, porosity = 0.4;  // [kg/m3], [-]
 
 struct Choices : example::RunChoices {
   Real cell_size = 0.5;       // [m]
+  Real foreland = 15;         // level ground before the toe [m]
   Real conductivity = 0.082;  // k_sat [m/s]
   Real suction = 5e5;         // at the surface [Pa]
   Real friction_angle = 20;   // [degrees]
   int points_per_cell = 4;
   bool rigid = false;
+
+  Real length() const { return toe_x + foreland; }  // [m]
 
   Choices()
       : RunChoices{.scheme = example::Scheme::explicit_steps,
@@ -61,7 +65,8 @@ struct Choices : example::RunChoices {
 Choices read(int count, char** words) {
   Choices c;
   example::Flags("clay_slope: rain on a slope of sandy clay, [Zhan] 4.5")
-      .number("--cell-size", "H", c.cell_size, "cells of H m that divide 36 and 14 m")
+      .number("--cell-size", "H", c.cell_size, "cells of H m that divide the box and 14 m")
+      .number("--foreland", "L", c.foreland, "level ground before the toe in m")
       .whole("--points-per-cell", c.points_per_cell, 64, "of each phase: 1, 4, 9, ...")
       .number("--conductivity", "K", c.conductivity, "k_sat in m/s; printed: 5")
       .number("--suction", "S", c.suction, "at the surface at the start in Pa")
@@ -107,6 +112,7 @@ Real ground(Real x) {
 
 template <class M, class S>
 vd::Solver<M, S> start(const Choices& c) {
+  const Real length = c.length();
   vd::Scene<M> scene{{.box = {{0.0, 0.0}, {length, 14.0}}, .cell_size = c.cell_size}};
   scene.gravity = {0.0, -9.81};
   scene.liquid = {.density = liquid_density, .bulk_modulus = c.bulk_modulus};

@@ -3,6 +3,7 @@
 // with the solver.
 
 #include <doctest/doctest.h>
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <cstdio>
@@ -341,7 +342,10 @@ TEST_CASE("run summary: the numbers printed are those of the solver") {
   CHECK(number_after(before, "solid, ") == 48);
   const Real dt = number_after(before, "step     ");
   CHECK(dt > 0);
-  CHECK(number_after(before, "steps    ") == doctest::Approx(1000 / dt).epsilon(0.01));
+  // A trend that the trial may show takes the step from that printed towards that of wet soil.
+  const Real shortest = std::min(dt, solver.estimate(1000.0).shortest_dt);
+  CHECK(number_after(before, "steps    ") >= 0.99 * 1000 / dt);
+  CHECK(number_after(before, "steps    ") <= 1.01 * 1000 / shortest);
   CHECK(before.find("limited by two-phase wave") != std::string::npos);
 
   const io::RunClock clock(solver);

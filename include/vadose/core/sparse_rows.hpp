@@ -147,18 +147,45 @@ class SparseSolver {
   /// x = A^-1 b to |b - A x| <= tolerance |b|.
   Outcome solve(const SparseRows& a, const std::vector<Real>& b, std::vector<Real>& x,
                 Real tolerance, int max_iterations, int threads) {
-    return solve(a, b, x, tolerance, max_iterations, threads,
-                 [&](const std::vector<Real>& y, std::vector<Real>& product) {
-                   multiply(a, y, product, threads);
-                 });
+    factor(a, threads);
+    return solve_factored(a, b, x, tolerance, max_iterations, threads);
   }
   /// The same for another matrix, given by `multiply(y, product)`, close enough to `a` that its
   /// factorisation serves.
   template <class Multiply>
   Outcome solve(const SparseRows& a, const std::vector<Real>& b, std::vector<Real>& x,
                 Real tolerance, int max_iterations, int threads, Multiply&& product_of) {
+    factor(a, threads);
+    return iterate(a, b, x, tolerance, max_iterations, threads, product_of);
+  }
+  /// Factors a matrix for solve_factored().
+  void factor(const SparseRows& a, int threads) { lu_.factor(a, threads); }
+  /// solve() of the matrix that was factored last.
+  Outcome solve_factored(const SparseRows& a, const std::vector<Real>& b, std::vector<Real>& x,
+                         Real tolerance, int max_iterations, int threads) {
+    return iterate(a, b, x, tolerance, max_iterations, threads,
+                   [&](const std::vector<Real>& y, std::vector<Real>& product) {
+                     multiply(a, y, product, threads);
+                   });
+  }
+
+  /// y = A x.
+  static void multiply(const SparseRows& a, const std::vector<Real>& x, std::vector<Real>& y,
+                       int threads) {
+    each(static_cast<std::size_t>(a.rows()), threads, [&](std::size_t i) {
+      const int row = static_cast<int>(i);
+      Real sum = 0;
+      for (int at = a.begin(row); at < a.end(row); ++at)
+        sum += a.value(at) * x[static_cast<std::size_t>(a.column(at))];
+      y[i] = sum;
+    });
+  }
+
+ private:
+  template <class Multiply>
+  Outcome iterate(const SparseRows& a, const std::vector<Real>& b, std::vector<Real>& x,
+                  Real tolerance, int max_iterations, int threads, Multiply&& product_of) {
     const auto n = static_cast<std::size_t>(a.rows());
-    lu_.factor(a, threads);
     for (auto* v : {&p_, &v_, &y_, &z_, &t_}) v->assign(n, 0);
     x.assign(n, 0);
     r_ = b;
@@ -203,19 +230,6 @@ class SparseSolver {
     return out;
   }
 
-  /// y = A x.
-  static void multiply(const SparseRows& a, const std::vector<Real>& x, std::vector<Real>& y,
-                       int threads) {
-    each(static_cast<std::size_t>(a.rows()), threads, [&](std::size_t i) {
-      const int row = static_cast<int>(i);
-      Real sum = 0;
-      for (int at = a.begin(row); at < a.end(row); ++at)
-        sum += a.value(at) * x[static_cast<std::size_t>(a.column(at))];
-      y[i] = sum;
-    });
-  }
-
- private:
   template <class F>
   static void each(std::size_t n, int threads, F&& f) {
     constexpr std::size_t chunk = IncompleteLu::chunk;

@@ -317,8 +317,10 @@ bool prepare_skeleton(State<M>& state) {
   fill_skeleton_matrix(state);
   const std::size_t size = skeleton.impulse.size();
   skeleton.factored = State<M>::dim < 3 || size <= most_factored_in_space;
+  skeleton.solved = true;
   if (!skeleton.factored) {
     fill_whole(skeleton.values, size, skeleton.matrix);
+    skeleton.iteration.factor(skeleton.matrix, state.options.threads);
     return true;
   }
   const auto rows = static_cast<int>(size);
@@ -327,15 +329,19 @@ bool prepare_skeleton(State<M>& state) {
   return skeleton.solver.factor(lower);
 }
 
-/// Velocities by impulses: skeleton.impulse to skeleton.velocity.
+/// Velocities by impulses: skeleton.impulse to skeleton.velocity. An iteration that ends far from its
+/// tolerance is noted in skeleton.solved.
 template <int Dim>
 void solve_skeleton(SkeletonSystem<Dim>& skeleton, int threads) {
-  constexpr Real tolerance = 1e-11;
-  if (skeleton.factored)
+  constexpr Real tolerance = 1e-11, limit = 1e-8;
+  constexpr int most = 1000;
+  if (skeleton.factored) {
     skeleton.solver.solve(skeleton.impulse, skeleton.velocity);
-  else
-    skeleton.iteration.solve(skeleton.matrix, skeleton.impulse, skeleton.velocity, tolerance, 1000,
-                             threads);
+    return;
+  }
+  const auto outcome = skeleton.iteration.solve_factored(
+      skeleton.matrix, skeleton.impulse, skeleton.velocity, tolerance, most, threads);
+  skeleton.solved = skeleton.solved && outcome.residual <= limit;
 }
 
 /// Velocities of both phases at the end of the step with the pressures of its start; false where the
@@ -346,6 +352,7 @@ bool predict_skeleton(State<M>& state) {
   auto& skeleton = state.system.skeleton;
   if (!prepare_skeleton(state)) return false;
   solve_skeleton(skeleton, state.options.threads);
+  if (!skeleton.solved) return false;
   for (std::size_t r = 0; r < skeleton.entry.size(); ++r) {
     const auto i = static_cast<std::size_t>(skeleton.entry[r]);
     const auto& n = skeleton.node[i];

@@ -48,10 +48,11 @@ struct SkeletonSystem {
   std::vector<std::vector<Entry>> rows;  ///< stiffness [N/m], lower triangle, columns ascending
   /// Coefficients of m + dt^2 K in the lower triangle, held rows apart [kg].
   std::vector<Eigen::Triplet<Real>> values;
-  bool factored = true;   ///< wholly; else the system is solved by iteration
-  SparseCholesky solver;  ///< in the plane, and of small systems
-  SparseRows matrix;      ///< the whole matrix of others
-  mutable SparseSolver iteration;
+  bool factored = true;                 ///< wholly; else the system is solved by iteration
+  bool solved = true;                   ///< every solution of this step converged
+  SparseCholesky solver;                ///< in the plane, and of small systems
+  SparseRows matrix;                    ///< the whole matrix of others
+  SparseSolver iteration;               ///< and their solution
   std::vector<Real> impulse, velocity;  ///< Dim per row
 };
 

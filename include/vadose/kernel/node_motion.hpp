@@ -1,0 +1,333 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+/// \file
+/// Steps 5 to 7, [Zhan] 3.4 (d), (e), at one node: forces, drag, walls and new velocities.
+
+#include <algorithm>
+
+#include <vadose/kernel/node_sums.hpp>
+
+namespace vadose::kernel {
+
+/// Velocities and masses of the two phases at a node.
+template <int Dim>
+struct NodeMotion {
+  Real solid_mass = 0, liquid_mass = 0;
+  Real solid[Dim] = {}, liquid[Dim] = {};              ///< before, then after [m/s]
+  Real solid_force[Dim] = {}, liquid_force[Dim] = {};  ///< [N]
+  Real drag[Dim] = {};                                 ///< implicit, times the step [kg]
+};
+
+/// DEVIATION: [Zhan] Eq. (20) prints the point force n p V grad N, without S, which pushes (1 - n) p at
+/// a pond: still water over soil does not stay still. Here the nodal liquid fraction weighs the
+/// gradient of the cell pressures.
+/// Forces of the liquid on both phases: f_l = phi G, f_s += R, R = sum f V S p grad N - phi G;
+/// at the fringe of the skeleton (occupancy o < 0.1) R is blended out. phi weighs the liquid's part
+/// by its mass at the node, so that water at rest stays at rest for any arrangement of points; what
+/// no skeleton is there to take of R, and what the blend takes from it, is handed back in `open`:
+/// momentum closes with its sum.
+template <int Dim>
+void pressure_forces(const NodeSums<Dim>& sums, Real skeleton_volume, Real liquid_density,
+                     NodeMotion<Dim>& node, Real (&open)[Dim]) noexcept {
+  if (!(sums.volume > 0)) return;
+  const Real phi = node.liquid_mass / (liquid_density * sums.volume);
+  const Real occupancy = min(1.0, skeleton_volume / sums.volume);
+  const Real w = min(1.0, occupancy / 0.1);
+  const Real n = sums.soil_volume > 0 ? sums.pores / sums.soil_volume : 1;
+  for (int d = 0; d < Dim; ++d) {
+    node.liquid_force[d] += phi * sums.force[d];
+    const Real full = sums.soil_force[d] - phi * sums.force[d];
+    const Real fringe = occupancy * (sums.soil_force[d] - n * sums.saturation[d] * sums.force[d]);
+    const Real taken = w * full + (1 - w) * fringe;
+    node.solid_force[d] += taken;
+    open[d] = node.solid_mass > 0 ? full - taken : full;
+  }
+}
+
+/// Local damping of the skeleton: against its velocity, by its share of the mass. Grains beyond the
+/// soil, among free water, are damped alone.
+template <int Dim>
+void damp(Real damping, bool beyond_soil, NodeMotion<Dim>& node) noexcept {
+  const Real liquid = beyond_soil ? 0 : 1;
+  const Real share = node.solid_mass / (node.solid_mass + liquid * node.liquid_mass);
+  for (int d = 0; d < Dim; ++d) {
+    const Real out_of_balance = std::fabs(node.solid_force[d] + liquid * node.liquid_force[d]);
+    const Real v = node.solid[d];
+    if (v != 0) node.solid_force[d] -= std::copysign(damping * out_of_balance * share, v);
+  }
+}
+
+/// DEVIATION: the drag is explicit in [Zhan], which needs steps of 1.5e-7 s for 4.1 unsaturated.
+/// New velocities of both phases along one axis with implicit drag q = dt D:
+/// [a + q, -q; -q, b + q] (v_l, v_s) = (r_l, r_s). Momentum conserving, stable for any q.
+inline void solve_pair(Real a, Real b, Real q, Real r_l, Real r_s, Real& v_l, Real& v_s) noexcept {
+  const Real det = a * b + q * (a + b);
+  v_l = ((b + q) * r_l + q * r_s) / det;
+  v_s = ((a + q) * r_s + q * r_l) / det;
+}
+
+/// Takes the relative velocity along the outward normal away, keeping the momentum of the pair.
+template <int Dim>
+void tie_normal(const Real (&normal)[Dim], bool rigid, NodeMotion<Dim>& node) noexcept {
+  Real length = 0;
+  for (int d = 0; d < Dim; ++d) length += normal[d] * normal[d];
+  if (!(length > 0)) return;
+  Real relative = 0;
+  for (int d = 0; d < Dim; ++d) relative += (node.liquid[d] - node.solid[d]) * normal[d];
+  relative /= length;
+  const Real total = node.liquid_mass + node.solid_mass;
+  const Real liquid_share = rigid ? 1 : node.solid_mass / total;
+  for (int d = 0; d < Dim; ++d) {
+    node.liquid[d] -= liquid_share * relative * normal[d];
+    node.solid[d] += (1 - liquid_share) * relative * normal[d];
+  }
+}
+
+/// The entry of a node that is flagged as special.
+template <class M>
+const SpecialNode<State<M>::dim>& special_node(const State<M>& state, std::int32_t entry) {
+  // Flagged nodes are listed, in ascending order.
+  return *std::lower_bound(
+      state.special.begin(), state.special.end(), entry,
+      [](const SpecialNode<State<M>::dim>& s, std::int32_t wanted) { return s.entry < wanted; });
+}
+
+/// Velocity that a node's skeleton is given from outside; NaN along an axis that is free.
+template <class M>
+void find_prescribed(const State<M>& state, std::int32_t entry, std::uint16_t flags,
+                     Real (&velocity)[State<M>::dim]) {
+  constexpr int dim = State<M>::dim;
+  for (int d = 0; d < dim; ++d)
+    velocity[d] = is_rigid<M> || (flags & (node_flag::solid_fixed << d)) ? 0 : unset;
+  if (!(flags & node_flag::special)) return;
+  const auto& s = special_node(state, entry);
+  for (int d = 0; d < dim; ++d)
+    if (s.prescribed[d]) velocity[d] = state.factor_values[s.factor] * s.velocity[d];
+}
+
+/// Motion of a node prescribed by the user, and friction on walls.
+template <class M>
+void apply_special(const State<M>& state, std::int32_t entry, NodeMotion<State<M>::dim>& node) {
+  constexpr int dim = State<M>::dim;
+  const SpecialNode<dim>& s = special_node(state, entry);
+  for (int d = 0; d < dim; ++d)
+    if (s.prescribed[d]) node.solid[d] = state.factor_values[s.factor] * s.velocity[d];
+  if (s.friction_axis < 0) return;
+  const int n = s.friction_axis;
+  const Real outward = s.friction_side == 0 ? -1 : 1;
+  const Real into = outward * node.solid[n];
+  if (into <= 0) return;  // leaves the wall: no contact
+  node.solid[n] = 0;
+  Real speed = 0;
+  for (int d = 0; d < dim; ++d)
+    if (d != n) speed += node.solid[d] * node.solid[d];
+  speed = std::sqrt(speed);
+  const Real keep = speed > 0 ? max(0.0, 1 - s.friction * into / speed) : 0;
+  for (int d = 0; d < dim; ++d)
+    if (d != n) node.solid[d] *= keep;
+}
+
+/// Soil is not drier than this for the drag [-].
+inline constexpr Real least_saturation = 1e-12;
+
+/// DEVIATION: [Zhan] Eq. (20) prints n m g / k without S; Eq. (2) has it, and so has this.
+/// Drag per velocity of a node along each axis for a law linear in the relative velocity: its
+/// coefficient, per volume of liquid, times the liquid volume in the soil at the node. That is the mass
+/// that carries force and momentum, so that the answer of the liquid, k / gamma in the drag limit, does
+/// not depend on it: with the upstream n S V in its place soil of S = 0.3 would let in a third of what
+/// enters. A quadratic part is linearised at the closed-form root (see below).
+template <class M>
+Real drag_coefficient(const State<M>& state, const NodeSums<State<M>::dim>& sums,
+                      Real liquid_volume, int axis) {
+  const Real s = max(sums.saturation[axis], least_saturation);
+  const Real k = sums.conductivity[axis];
+  const auto& material = state.soils[sums.material].material;
+  if (!(k > 0)) return 1e30;
+  return liquid_volume *
+         drag::coefficient<Real>(material.drag, sums.porosity(), s, k, material.unit_weight);
+}
+
+/// Factor 1 + B |w| / A by which a quadratic drag term raises the linear coefficient, with |w|
+/// after the step from the positive root of its equation (Forchheimer, closed form).
+template <class M>
+Real quadratic_drag_factor(const State<M>& state, const NodeSums<State<M>::dim>& sums,
+                           Real liquid_volume, const NodeMotion<State<M>::dim>& node,
+                           const Real (&linear)[State<M>::dim]) {
+  constexpr int dim = State<M>::dim;
+  if constexpr (!QuadraticDrag<typename M::Drag>) {
+    return 1;
+  } else {
+    Real w2 = 0, a = 0, k = 0, s = 0;
+    const Real inverse = 1 / node.liquid_mass + (node.solid_mass > 0 ? 1 / node.solid_mass : 0.0);
+    for (int d = 0; d < dim; ++d) {
+      const Real w = node.liquid[d] - node.solid[d] +
+                     state.dt * (node.liquid_force[d] / node.liquid_mass -
+                                 (node.solid_mass > 0 ? node.solid_force[d] / node.solid_mass : 0));
+      w2 += w * w;
+      a += linear[d] / dim;
+      k += sums.conductivity[d] / dim;
+      s += max(sums.saturation[d], least_saturation) / dim;
+    }
+    const auto& material = state.soils[sums.material].material;
+    const Real b = liquid_volume * drag::quadratic<Real>(material.drag, sums.porosity(), s, k,
+                                                         material.unit_weight, state.water.density);
+    const Real p = 1 + state.dt * inverse * a;
+    const Real q = state.dt * inverse * b;
+    const Real w = 2 * std::sqrt(w2) / (p + std::sqrt(p * p + 4 * q * std::sqrt(w2)));
+    return a > 0 ? 1 + b * w / a : 1;
+  }
+}
+
+/// New velocities of a node that may hold both phases; the drag feels a prescribed skeleton.
+template <class M>
+void advance_pair(const State<M>& state, const NodeSums<State<M>::dim>& sums,
+                  const Real (&prescribed)[State<M>::dim], NodeMotion<State<M>::dim>& node) {
+  constexpr int dim = State<M>::dim;
+  const Real dt = state.dt;
+  const bool has_solid = is_rigid<M> ? sums.has_soil : node.solid_mass > 0;
+  const bool has_water = node.liquid_mass > 0;
+  const Real liquid_volume = node.liquid_mass / state.water.density * sums.soil_share();
+  const bool drags = has_solid && liquid_volume > 0;
+  Real linear[dim] = {};
+  Real factor = 1;
+  if (drags) {
+    for (int d = 0; d < dim; ++d) linear[d] = drag_coefficient(state, sums, liquid_volume, d);
+    factor = quadratic_drag_factor(state, sums, liquid_volume, node, linear);
+  }
+  for (int d = 0; d < dim; ++d) {
+    const Real a = node.liquid_mass, b = node.solid_mass;
+    const Real r_l = a * node.liquid[d] + dt * node.liquid_force[d];
+    const Real r_s = b * node.solid[d] + dt * node.solid_force[d];
+    const Real q = dt * linear[d] * factor;
+    node.drag[d] = q;
+    const bool fixed = is_finite(prescribed[d]);
+    if (fixed)
+      node.solid[d] = prescribed[d];
+    else if (has_solid)
+      node.solid[d] = r_s / b;
+    if (has_water) node.liquid[d] = (r_l + q * node.solid[d]) / (a + q);
+    if (has_water && has_solid && !fixed) {
+      if (drags && state.frozen)
+        node.liquid[d] = node.solid[d] = (r_l + r_s) / (a + b);
+      else if (drags)
+        solve_pair(a, b, q, r_l, r_s, node.liquid[d], node.solid[d]);
+    }
+    if (!has_water) node.liquid[d] = node.solid[d];
+  }
+}
+
+/// Walls and prescribed motion, after the velocities.
+template <class M>
+void apply_walls(const State<M>& state, std::int32_t entry, std::uint16_t flags,
+                 NodeMotion<State<M>::dim>& node) {
+  for (int d = 0; d < State<M>::dim; ++d) {
+    if (flags & (node_flag::solid_fixed << d)) node.solid[d] = 0;
+    if (flags & (node_flag::liquid_fixed << d)) node.liquid[d] = 0;
+  }
+  if (flags & node_flag::special) apply_special(state, entry, node);
+}
+
+/// Closed surfaces and walls, after the velocities.
+template <class M>
+void apply_boundaries(const State<M>& state, const NodeSums<State<M>::dim>& sums,
+                      std::int32_t entry, std::uint16_t flags, NodeMotion<State<M>::dim>& node) {
+  constexpr int dim = State<M>::dim;
+  const bool both = node.liquid_mass > 0 && (is_rigid<M> || node.solid_mass > 0);
+  if (sums.closed_surface && both) {
+    // Along a wall only what lies in the wall counts: the other half of the soil is missing there.
+    Real normal[dim];
+    for (int d = 0; d < dim; ++d)
+      normal[d] = flags & (node_flag::liquid_fixed << d) ? 0 : sums.normal[d];
+    tie_normal(normal, is_rigid<M>, node);
+  }
+  apply_walls(state, entry, flags, node);
+}
+
+/// Walls mirror what is before them: both before and after a step nothing crosses them, so that they
+/// give points no change of velocity of their own. (A node of a wall still receives momentum from points
+/// that only come near it. Taken for a change of velocity, what the wall keeps back of it brakes the
+/// points beside it in every step: div v off by 9 to 21 % in two layers of cells.)
+template <int Dim>
+void mirror_at_walls(std::uint16_t flags, NodeMotion<Dim>& before) noexcept {
+  for (int d = 0; d < Dim; ++d) {
+    if (flags & (node_flag::solid_fixed << d)) before.solid[d] = 0;
+    if (flags & (node_flag::liquid_fixed << d)) before.liquid[d] = 0;
+  }
+}
+
+/// Velocity of a phase and its change, as points read them.
+template <int Dim>
+Record velocity_record(const Real (&before)[Dim], const Real (&after)[Dim]) noexcept {
+  Record out;
+  for (int d = 0; d < Dim; ++d) {
+    out[lane::velocity + d] = after[d];
+    out[lane::increment + d] = after[d] - before[d];
+  }
+  return out;
+}
+
+/// Writes the velocities of one node.
+template <class M>
+void store_velocities(State<M>& state, std::size_t i, const NodeMotion<State<M>::dim>& before,
+                      const NodeMotion<State<M>::dim>& after) {
+  if constexpr (is_deformable<M>)
+    state.nodes.solid_out[i] = velocity_record(before.solid, after.solid);
+  if constexpr (has_liquid<M>)
+    state.nodes.liquid_out[i] = velocity_record(before.liquid, after.liquid);
+}
+
+/// Head gradient that drives the flow through the soil at a node along an axis, per n (v^l - v^s):
+/// linear drag of its soil and the inertia of a step [Pa s/m2].
+template <class M>
+Real resistance(const State<M>& state, const NodeSums<State<M>::dim>& sums, int axis) noexcept {
+  if (!(sums.soil_volume > 0) || !(sums.conductivity[axis] > 0)) return 0;
+  return (state.water.density / state.dt + drag_coefficient(state, sums, sums.soil_share(), axis)) /
+         sums.porosity();
+}
+
+/// Writes the results of one node.
+template <class M>
+void store_node(State<M>& state, std::size_t i, const NodeSums<State<M>::dim>& sums, Real porosity,
+                const NodeMotion<State<M>::dim>& before, const NodeMotion<State<M>::dim>& after) {
+  constexpr int dim = State<M>::dim;
+  auto& nodes = state.nodes;
+  store_velocities(state, i, before, after);
+  if constexpr (has_liquid<M>) {
+    Record flux, relative;
+    for (int d = 0; d < dim; ++d) {
+      flux[d] = porosity * after.liquid[d] + (1 - porosity) * after.solid[d];
+      relative[d] = porosity * (after.liquid[d] - after.solid[d]);
+      relative[4 + d] = sums.head_gradient[d];
+      if constexpr (has_skeleton<M>) flux[4 + d] = resistance(state, sums, d);
+    }
+    nodes.mixture[i] = flux;
+    nodes.relative[i] = relative;
+  }
+}
+
+/// Loads what the points mapped to a node.
+template <class M>
+NodeMotion<State<M>::dim> load_node(const State<M>& state, std::size_t i) noexcept {
+  constexpr int dim = State<M>::dim;
+  NodeMotion<dim> node;
+  if constexpr (is_deformable<M>) {
+    const Record& s = state.nodes.solid_in[i];
+    node.solid_mass = s[lane::mass];
+    for (int d = 0; d < dim; ++d) {
+      if (s[lane::mass] > 0) node.solid[d] = s[lane::momentum + d] / s[lane::mass];
+      node.solid_force[d] = s[lane::force + d] + s[lane::mass] * state.gravity[d];
+    }
+  }
+  if constexpr (has_liquid<M>) {
+    const Record& l = state.nodes.liquid_in[i];
+    node.liquid_mass = l[lane::mass];
+    for (int d = 0; d < dim; ++d) {
+      node.liquid[d] = l[lane::mass] > 0 ? l[lane::momentum + d] / l[lane::mass] : node.solid[d];
+      node.liquid_force[d] = l[lane::force + d] + l[lane::mass] * state.gravity[d];
+    }
+  }
+  return node;
+}
+
+}  // namespace vadose::kernel

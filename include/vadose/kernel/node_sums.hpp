@@ -1,0 +1,272 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+/// \file
+/// What cells and faces bring to the nodes around them.
+
+#include <algorithm>
+
+#include <vadose/kernel/faces.hpp>
+#include <vadose/kernel/map_to_grid.hpp>
+
+namespace vadose::kernel {
+
+/// What the cells around a node give it.
+template <int Dim>
+struct NodeSums {
+  Real volume = 0;  ///< V_c,I = sum f V_c N_I [m3]
+  /// G_I = sum f V_c (p - p_ref) grad N_I [N]; p_ref is the pressure at the surface or held wall
+  /// that the node's cells end at, so that uniform pressure is at rest for any cut.
+  Real force[Dim] = {};
+  Real gradient[Dim] = {};   ///< sum f V_c grad N_I, zero inside [m2]
+  Real reference[Dim] = {};  ///< sums of reference pressures of the cells around [Pa]
+  int references = 0;
+  Real soil_force[Dim] = {};      ///< sum f V_c S p grad N_I [N]
+  Real skeleton_force[Dim] = {};  ///< - sum f V_c (mean Bishop stress) grad N_I [N]
+  Real soil_volume = 0;           ///< share of V_c,I in soil cells, bulk of soil only [m3]
+  Real pores = 0;                 ///< sum of n over it [m3]
+  Real saturation[Dim] = {};      ///< upstream, mean over the faces across an axis
+  Real conductivity[Dim] = {};
+  Real head_gradient[Dim] = {};
+  std::uint8_t material = 0;
+  int soil_cells = 0;           ///< cells around that hold soil
+  bool closed_surface = false;  ///< touches soil and air, and no water passes
+  bool has_soil = false;
+  bool has_free = false;  ///< touches free water
+  Real normal[Dim] = {};  ///< out of the soil, where closed_surface
+
+  /// Part of the control volume that is soil; the rest is free water [-].
+  Real soil_share() const noexcept { return soil_volume > 0 ? min(1.0, soil_volume / volume) : 0; }
+  /// Of the control volume; that of free water is 1. Volumetric, so that a trace of solid at a node
+  /// does not make it soil.
+  Real porosity() const noexcept {
+    return soil_volume > 0 ? 1 - (1 - pores / soil_volume) * soil_share() : 1;
+  }
+};
+
+/// Value and gradient of the hat function of corner `corner` (0 or 1 per axis) of a cell.
+template <int Dim>
+struct CornerFunction {
+  Real value = 1;
+  Real gradient[Dim];
+
+  CornerFunction(const Real (&xi)[Dim], const Index<Dim>& corner, Real over_h) noexcept {
+    Real n[Dim], g[Dim];
+    for (int d = 0; d < Dim; ++d) {
+      n[d] = corner[d] ? xi[d] : 1 - xi[d];
+      g[d] = corner[d] ? over_h : -over_h;
+      value *= n[d];
+    }
+    for (int d = 0; d < Dim; ++d) {
+      gradient[d] = g[d];
+      for (int e = 0; e < Dim; ++e)
+        if (e != d) gradient[d] *= n[e];
+    }
+  }
+};
+
+/// Coordinates of a cell's quadrature point in the cell, 0 .. 1 (up to 1.5 with slivers).
+template <class M>
+void quad_coordinates(const State<M>& state, const Index<State<M>::dim>& cell,
+                      const Cell<State<M>::dim>& c, Real (&xi)[State<M>::dim]) noexcept {
+  const Real over_h = 1 / state.grid.cell_size();
+  for (int d = 0; d < State<M>::dim; ++d)
+    xi[d] = (c.quad_point[d] - state.grid.origin()[d]) * over_h - cell[d];
+}
+
+/// Lanes of what a cell brings to its nodes: in the first record what goes with value and gradient
+/// of a node's function, in the second what adds up over the cells around a node, and their places.
+namespace cell_lane {
+inline constexpr int volume = 0;         ///< f V_c [m3]
+inline constexpr int pressure = 1;       ///< f V_c p [J]
+inline constexpr int soil_pressure = 2;  ///< f V_c S p [J]
+inline constexpr int mean_stress = 3;    ///< - f V_c (mean Bishop stress) of the soil in it [J]
+inline constexpr int soil_volume = 4;    ///< f V_c of soil [m3]
+inline constexpr int pores = 5;          ///< n of soil over it [m3]
+inline constexpr int holds_soil = 6;     ///< f V_c where there is soil at all [m3]
+// Second record:
+inline constexpr int saturation = 0;    ///< of a cell with soil [-]
+inline constexpr int conductivity = 1;  ///< of a cell with soil [m/s]
+inline constexpr int counts = 3;  ///< 1 with a reference pressure, 16 with soil, 256 free water
+inline constexpr int place = 4;   ///< first of three, quadrature point in the cell
+inline constexpr int over_radius = 7;  ///< 1/r there [1/m]
+}  // namespace cell_lane
+
+/// The two records of a cell.
+/// DEVIATION: [Zhan] Eq. (22) takes the whole stress of each point to the nodes.
+/// The skeleton's mean stress acts here like the liquid's pressure, with the same quadrature: a
+/// free surface under suction (sigma* = S p) is then in balance node by node, and a stiff liquid
+/// does not lock the skeleton; the deviator acts through the points' own functions.
+template <class M>
+void prepare_cell(const State<M>& state, const Cell<State<M>::dim>& c,
+                  const Index<State<M>::dim>& cell, Record& weighted, Record& plain) noexcept {
+  constexpr int dim = State<M>::dim;
+  Real xi[dim];
+  quad_coordinates(state, cell, c, xi);
+  const bool soil = c.soil_share > 0;
+  const Real p = c.quad_volume * c.quad_pressure;
+  weighted[cell_lane::volume] = c.quad_volume;
+  weighted[cell_lane::pressure] = p;
+  weighted[cell_lane::soil_pressure] = c.saturation * p;
+  weighted[cell_lane::mean_stress] = -(c.quad_volume * c.soil_share * c.mean_stress);
+  weighted[cell_lane::soil_volume] = soil ? c.quad_volume * c.soil_share : 0;
+  weighted[cell_lane::pores] = weighted[cell_lane::soil_volume] * c.soil_porosity;
+  weighted[cell_lane::holds_soil] = soil ? c.quad_volume : 0;
+  plain[cell_lane::saturation] = soil ? c.saturation : 0;
+  plain[cell_lane::conductivity] = soil ? c.conductivity : 0;
+  plain[cell_lane::counts] =
+      (c.has_reference ? 1 : 0) + (soil ? 16 : 0) + (c.kind == CellKind::free ? 256 : 0);
+  for (int d = 0; d < dim; ++d) plain[cell_lane::place + d] = xi[d];
+  plain[cell_lane::over_radius] = State<M>::Kinematics::axisymmetric ? 1 / c.quad_point[0] : 0;
+}
+
+/// The records of all cells around the nodes of a block.
+template <class M>
+struct CellParts {
+  static constexpr int dim = State<M>::dim;
+  const Record* weighted;
+  const Record* plain;
+
+  CellParts(State<M>& state, int slot, int thread)
+      : weighted(state.tile(thread, 2).record), plain(state.tile(thread, 3).record) {
+    const auto& grid = state.grid;
+    const Index<dim> first = grid.first_cell(slot);
+    for_cube<dim>(-1, Block<dim>::edge, [&](const Index<dim>& i) {
+      const int at = BlockGrid<dim>::tile_index(i);
+      const std::int32_t e = grid.tile(slot)[at];
+      if (state.nodes.dof[static_cast<std::size_t>(e)] != e) return;
+      Index<dim> cell = first;
+      for (int d = 0; d < dim; ++d) cell[d] += i[d];
+      prepare_cell(state, state.nodes.cell[static_cast<std::size_t>(e)], cell,
+                   state.tile(thread, 2).record[at], state.tile(thread, 3).record[at]);
+    });
+  }
+};
+
+/// Sums over the cells around a node, as they are added up.
+template <int Dim>
+struct CellSums {
+  Lanes value{0.0}, plain{0.0};
+  Lanes slope[Dim];
+
+  CellSums() noexcept {
+    for (auto& s : slope) s = Lanes(0.0);
+  }
+  /// Adds a cell of which the node is corner `corner`.
+  VADOSE_INLINE void add(const Record& weighted, const Record& marks, const Index<Dim>& corner,
+                         Real over_h) noexcept {
+    Real xi[Dim];
+    for (int d = 0; d < Dim; ++d) xi[d] = marks[cell_lane::place + d];
+    CornerFunction<Dim> shape(xi, corner, over_h);
+    shape.gradient[0] += shape.value * marks[cell_lane::over_radius];
+    const Lanes w = Lanes::load(weighted.value);
+    value += w * Lanes(shape.value);
+    for (int d = 0; d < Dim; ++d) slope[d] += w * Lanes(shape.gradient[d]);
+    plain += Lanes::load(marks.value);
+  }
+  /// What the node needs of them.
+  void store(NodeSums<Dim>& node) const noexcept {
+    const int counts = static_cast<int>(plain[cell_lane::counts]);
+    node.references = counts % 16;
+    node.soil_cells = counts / 16 % 16;
+    node.has_soil = node.soil_cells > 0;
+    node.has_free = counts >= 256;
+    node.volume = value[cell_lane::volume];
+    node.soil_volume = value[cell_lane::soil_volume];
+    node.pores = value[cell_lane::pores];
+    for (int d = 0; d < Dim; ++d) {
+      node.force[d] = slope[d][cell_lane::pressure];
+      node.gradient[d] = slope[d][cell_lane::volume];
+      node.soil_force[d] = slope[d][cell_lane::soil_pressure];
+      node.skeleton_force[d] = slope[d][cell_lane::mean_stress];
+      node.normal[d] = -slope[d][cell_lane::holds_soil];
+      node.saturation[d] = plain[cell_lane::saturation];  // fallback where no face crosses the axis
+      node.conductivity[d] = plain[cell_lane::conductivity];
+    }
+  }
+};
+
+/// Position of the face that counts at a node for the lower face of the cell at `at` in a tile: that
+/// face, or, where it lies between a sliver and the cell whose pressure the sliver shares, the surface
+/// on the sliver's far side. (The water of the sliver is at the nodes of that cell.)
+template <class M>
+std::size_t face_at_node(const State<M>& state, const std::int32_t* tile, int at,
+                         int axis) noexcept {
+  constexpr int dim = State<M>::dim;
+  const auto& nodes = state.nodes;
+  const auto face = [&](std::int32_t cell) {
+    return static_cast<std::size_t>(cell) * dim + static_cast<std::size_t>(axis);
+  };
+  const std::size_t near = face(tile[at]);
+  if (nodes.face[near].kind != FaceKind::closed) return near;
+  const int stride = BlockGrid<dim>::tile_stride(axis);
+  const std::int32_t cell = tile[at], low = tile[at - stride];
+  const std::int32_t owner = nodes.dof[static_cast<std::size_t>(cell)];
+  if (owner < 0 || cell == low || owner != nodes.dof[static_cast<std::size_t>(low)]) return near;
+  if (owner != low && owner != cell) return near;
+  const std::size_t far = face(owner == low ? tile[at + stride] : low);
+  return nodes.face[far].kind == FaceKind::inside ? near : far;
+}
+
+/// Gathers cells and faces around a node (local index in its block).
+template <class M>
+NodeSums<State<M>::dim> gather_node(const State<M>& state, const CellView<M>& view,
+                                    const CellParts<M>& parts) {
+  constexpr int dim = State<M>::dim;
+  const auto& nodes = state.nodes;
+  NodeSums<dim> node;
+  int air = 0, faces[dim] = {};
+  Real saturation[dim] = {}, conductivity[dim] = {}, gradient[dim] = {};
+  bool open = false;
+  CellSums<dim> sums;
+  const Real over_h = 1 / state.grid.cell_size();
+  for_cube<dim>(0, 2, [&](const Index<dim>& corner) {
+    // The cell of which this node is corner `corner`.
+    int at = view.at;
+    bool inside = true;
+    for (int d = 0; d < dim; ++d) {
+      const int cell = view.cell[d] - corner[d];
+      at -= corner[d] * BlockGrid<dim>::tile_stride(d);
+      inside = inside && cell >= 0 && cell < state.grid.cells()[d];
+    }
+    const auto e = static_cast<std::size_t>(view.tile[at]);
+    const std::int32_t owner = nodes.dof[e];
+    if (inside && owner < 0) ++air;
+    if (inside && owner == view.tile[at]) {
+      sums.add(parts.weighted[at], parts.plain[at], corner, over_h);
+      if (nodes.cell[e].has_reference)
+        for (int d = 0; d < dim; ++d) node.reference[d] += nodes.cell[e].reference_pressure[d];
+      if (state.soils.size() > 1 && nodes.cell[e].soil_share > 0)
+        node.material = nodes.cell[e].material;
+    }
+    // Faces whose plane goes through the node: lower faces of the cells on its upper side.
+    for (int d = 0; d < dim; ++d) {
+      if (corner[d]) continue;
+      const FaceFlux& f = nodes.face[face_at_node(state, view.tile, at, d)];
+      if (f.kind == FaceKind::closed || f.is_shut()) continue;
+      open = open || f.kind == FaceKind::surface;
+      ++faces[d];
+      saturation[d] += f.saturation;
+      conductivity[d] += f.conductivity;
+      gradient[d] += f.head_gradient;
+    }
+  });
+  sums.store(node);
+  if (node.references > 0 && !node.has_free)
+    for (int d = 0; d < dim; ++d)
+      node.force[d] -= node.reference[d] / node.references * node.gradient[d];
+  for (int d = 0; d < dim; ++d) {
+    if (faces[d] > 0) {
+      node.saturation[d] = saturation[d] / faces[d];
+      node.conductivity[d] = conductivity[d] / faces[d];
+      node.head_gradient[d] = gradient[d] / faces[d];
+    } else if (node.soil_cells > 0) {
+      node.saturation[d] /= node.soil_cells;
+      node.conductivity[d] /= node.soil_cells;
+    }
+  }
+  node.closed_surface = node.soil_cells > 0 && air > 0 && !open && !node.has_free;
+  return node;
+}
+
+}  // namespace vadose::kernel
