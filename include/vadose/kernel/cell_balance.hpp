@@ -54,6 +54,7 @@ void find_implicit_fluxes(State<M>& state) {
       state.grid, state.options.threads,
       [&](std::int32_t e, const Index<dim>& local, int slot, int) {
         const CellView<M> view(state, local, slot);
+        const FaceHeads<M> heads = find_face_heads(state, view);
         for (int d = 0; d < dim; ++d) {
           FaceFlux& face =
               state.nodes.face[static_cast<std::size_t>(e) * dim + static_cast<std::size_t>(d)];
@@ -69,7 +70,7 @@ void find_implicit_fluxes(State<M>& state) {
                 .surface_slope[static_cast<std::size_t>(e) * dim + static_cast<std::size_t>(d)] = {
                 flux.head_slope, flux.grain_slope};
           } else {
-            face.flux = face.area * nodal_flux(state, view, d, face);
+            face.flux = face.area * nodal_flux(state, view, d, face, heads);
           }
         }
       });

@@ -152,10 +152,9 @@ void find_momentum_gain(const State<M>& state, const CellView<M>& view,
                         Cell<State<M>::dim>& cell) noexcept {
   constexpr int dim = State<M>::dim;
   for_collected_inflows(state, view, [&](const Inflow<dim>& f) {
-    const Real dm = f.from && f.flux > 0 ? passed_water(state, cell, f) : 0;
-    if (dm > 0)
+    if (f.from && f.flux > 0)
       for (int d = 0; d < dim; ++d)
-        cell.momentum_gain[d] += dm * (f.from->mean_velocity[d] - cell.mean_velocity[d]);
+        cell.momentum_gain[d] += f.flux * (f.from->mean_velocity[d] - cell.mean_velocity[d]);
   });
   const Real after = cell.water + cell.gain;
   for (Real& v : cell.momentum_gain) v = after > 0 ? v / after : 0;

@@ -439,7 +439,6 @@ void gather_cell(State<M>& state, const CellView<M>& view) {
   cell.pressure = sums[lane::pore_pressure] / weight;  // mean at the centroid: start value
   for (int d = 0; d < dim; ++d) cell.centroid[d] = sums[lane::pore_position + d] / weight;
   cell.gain = 0;
-  cell.limit = 1;
   cell.solved = false;
 
   const bool full = members == 1 && !at_air;
@@ -453,18 +452,6 @@ void gather_cell(State<M>& state, const CellView<M>& view) {
   cell.drop = members == 1 && cell.raw_fill < sliver_fill;
   if (cell.drop) cell.quad_volume = 0;
   place_quadrature(view, members, cell);
-}
-
-/// Gathers every cell that owns its pressure.
-template <class M>
-void gather_cells(State<M>& state) {
-  for_cells(state.grid, state.options.threads,
-            [&](std::int32_t e, const Index<State<M>::dim>& local, int slot, int) {
-              if (state.nodes.dof[static_cast<std::size_t>(e)] == e)
-                gather_cell(state, CellView<M>(state, local, slot));
-              else if constexpr (is_unsaturated<M>)
-                state.nodes.cell[static_cast<std::size_t>(e)].closing = unset;
-            });
 }
 
 }  // namespace vadose::kernel

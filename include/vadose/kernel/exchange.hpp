@@ -151,6 +151,39 @@ Real leaving_share(const State<M>& state, const CellView<M>& view, int axis, con
   return both ? inertia_share(state, face, soil_cell(view, axis, face)) : 0;
 }
 
+/// What the nodes around the lower faces of a cell say of the water there, summed over those of each face.
+/// Along an axis: the head gradient that drives it, as the velocities say, and the mean of the faces around
+/// each node [Pa/m].
+template <class M>
+struct FaceHeads {
+  static constexpr int dim = State<M>::dim;
+  Real driving[dim] = {};
+  Real mean[dim] = {};
+
+  FaceHeads() = default;
+  FaceHeads(const State<M>& state, const CellView<M>& view) noexcept {
+    const auto& nodes = state.nodes;
+    Lanes drives(0.0), means(0.0);  // in lanes 0 .. 2, in lanes 4 .. 6
+    for_cube<dim>(0, 2, [&](const Index<dim>& corner) {
+      int at = view.at;
+      std::size_t number = 0;
+      for (int d = 0; d < dim; ++d) {
+        at += corner[d] * BlockGrid<dim>::tile_stride(d);
+        number += static_cast<std::size_t>(corner[d]) << d;
+      }
+      const auto i = static_cast<std::size_t>(view.tile[at]);
+      const Lanes touches = Lanes::load(in_lower_face<dim>[number].value);
+      const Lanes relative = Lanes::load(nodes.relative[i].value);
+      drives += swap_halves(Lanes::load(nodes.mixture[i].value)) * touches * relative;
+      means += touches * relative;
+    });
+    for (int d = 0; d < dim; ++d) {
+      driving[d] = drives[d];
+      mean[d] = means[4 + d];
+    }
+  }
+};
+
 /// Flux per area between two soil cells: the head gradient that drives the water at the nodes of the face,
 /// as their velocities say, times the mobility of the face. (A node's own is a mean over its faces, wet and
 /// dry, inside and at the ground; across a slope they lie side by side, and the dry one would carry several
@@ -158,36 +191,38 @@ Real leaving_share(const State<M>& state, const CellView<M>& view, int axis, con
 /// and removes the checkerboard that nodes do not see. In the drag limit this is the two-point flux of the
 /// face.
 template <class M>
-Real inside_flux(const State<M>& state, const CellView<M>& view, int axis,
-                 const FaceFlux& face) noexcept {
-  constexpr int dim = State<M>::dim;
+Real inside_flux(const State<M>& state, const CellView<M>& view, int axis, const FaceFlux& face,
+                 const FaceHeads<M>& heads) noexcept {
   const auto& nodes = state.nodes;
-  Real head_gradient = 0, mean_gradient = 0;
-  for_cube<dim>(0, 2, [&](const Index<dim>& corner) {
-    if (corner[axis]) return;
-    int at = view.at;
-    for (int d = 0; d < dim; ++d) at += corner[d] * BlockGrid<dim>::tile_stride(d);
-    const auto i = static_cast<std::size_t>(view.tile[at]);
-    head_gradient += nodes.mixture[i][4 + axis] * nodes.relative[i][axis];
-    mean_gradient += nodes.relative[i][4 + axis];
-  });
   if (!(face.saturation > 0) || !(face.conductivity > 0)) return 0;
-  constexpr Real corners = power<dim - 1>(2.0);
+  constexpr Real corners = power<State<M>::dim - 1>(2.0);
   const std::int32_t side = face.is_from_above() ? view.entry() : view.neighbour(axis, -1);
   const auto& soil =
       nodes.cell[static_cast<std::size_t>(nodes.dof[static_cast<std::size_t>(side)])];
   const Real drag = face_drag(state, face, soil), inertia = state.water.density / state.dt;
   return soil.porosity * face.saturation *
-         (head_gradient / corners / (inertia + drag) -
-          (face.head_gradient - mean_gradient / corners) / (checkerboard_inertia * inertia + drag));
+         (heads.driving[axis] / corners / (inertia + drag) -
+          (face.head_gradient - heads.mean[axis] / corners) /
+              (checkerboard_inertia * inertia + drag));
+}
+
+/// The heads at the lower faces of a cell; zero where none of them lies between soil cells.
+template <class M>
+FaceHeads<M> find_face_heads(const State<M>& state, const CellView<M>& view) noexcept {
+  constexpr int dim = State<M>::dim;
+  const FaceFlux* face = &state.nodes.face[static_cast<std::size_t>(view.entry()) * dim];
+  bool any = false;
+  for (int d = 0; d < dim; ++d) any = any || face[d].kind == FaceKind::inside;
+  return any ? FaceHeads<M>(state, view) : FaceHeads<M>();
 }
 
 /// Flux per area through the lower face of a cell along an axis. Free water passes as its points do, with
 /// the velocity of the nodes.
 template <class M>
-Real nodal_flux(const State<M>& state, const CellView<M>& view, int axis, const FaceFlux& face) {
+Real nodal_flux(const State<M>& state, const CellView<M>& view, int axis, const FaceFlux& face,
+                const FaceHeads<M>& heads) {
   constexpr int dim = State<M>::dim;
-  if (face.kind == FaceKind::inside) return inside_flux(state, view, axis, face);
+  if (face.kind == FaceKind::inside) return inside_flux(state, view, axis, face, heads);
   if (face.kind == FaceKind::surface) return surface_flux(state, view, axis, face).value;
   Real velocity = 0;
   for_cube<dim>(0, 2, [&](const Index<dim>& corner) {
@@ -201,14 +236,15 @@ Real nodal_flux(const State<M>& state, const CellView<M>& view, int axis, const 
 
 /// Flux through the lower face of a cell along an axis.
 template <class M>
-void find_flux(const State<M>& state, const CellView<M>& view, int axis, FaceFlux& face) {
+void find_flux(const State<M>& state, const CellView<M>& view, int axis, const FaceHeads<M>& heads,
+               FaceFlux& face) {
   face.flux = 0;
   if (face.kind == FaceKind::closed) return;
   if (face.is_shut()) {
     face.flux = face.soil_below ? -face.supply : face.supply;
     return;
   }
-  Real flux = nodal_flux(state, view, axis, face);
+  Real flux = nodal_flux(state, view, axis, face, heads);
   if (face.kind == FaceKind::surface) flux *= leaving_share(state, view, axis, face, flux);
   face.flux = face.area * flux;
   if (face.fed)  // no more than there is
@@ -220,17 +256,18 @@ template <class M>
 void find_fluxes(State<M>& state, const CellView<M>& view) {
   constexpr int dim = State<M>::dim;
   const std::size_t first = static_cast<std::size_t>(view.entry()) * dim;
+  const FaceHeads<M> heads = find_face_heads(state, view);
   for (int d = 0; d < dim; ++d) {
     const std::size_t i = first + static_cast<std::size_t>(d);
-    find_flux(state, view, d, state.nodes.face[i]);
+    find_flux(state, view, d, heads, state.nodes.face[i]);
     state.nodes.flux[i] = state.nodes.face[i].flux;
   }
 }
 
-/// One face of a pressure cell as seen from it: flux into the cell [m3/s] and the cell beyond.
+/// One face of a pressure cell as seen from it and the cell beyond.
 template <int Dim>
 struct Inflow {
-  Real flux = 0;
+  Real flux = 0;                    ///< into the cell [m3/s], or water that passed [kg]
   const Cell<Dim>* from = nullptr;  ///< other side, nullptr: boundary
   const FaceFlux* face = nullptr;
   int axis = 0;    ///< across the face
@@ -283,7 +320,7 @@ void for_inflows(const State<M>& state, const CellView<M>& view, F&& f) {
       state, view, [&](std::size_t i) { return state.nodes.face[i].flux; }, f);
 }
 
-/// The same once the fluxes are collected: neighbours then read 8 bytes of a face.
+/// The same of the collected fluxes, of which loops read 8 bytes; of passed water once that is found.
 template <class M, class F>
 void for_collected_inflows(const State<M>& state, const CellView<M>& view, F&& f) {
   for_inflows(
@@ -313,19 +350,20 @@ void limit_donors(State<M>& state) {
   state.nodes.limited.assign(static_cast<std::size_t>(state.grid.slots()), 0);
   for_cells(state.grid, state.options.threads,
             [&](std::int32_t e, const Index<dim>& local, int slot, int) {
-              if (state.nodes.dof[static_cast<std::size_t>(e)] != e) return;
-              const CellView<M> view(state, local, slot);
-              auto& cell = state.nodes.cell[static_cast<std::size_t>(e)];
+              const auto i = static_cast<std::size_t>(e);
+              if (state.nodes.dof[i] != e) return;
+              const auto& cell = state.nodes.cell[i];
               Real out = 0, in = 0;
-              for_collected_inflows(state, view, [&](const Inflow<dim>& f) {
-                out += max(0.0, -f.flux);
-                in += max(0.0, f.flux);
-              });
+              for_collected_inflows(state, CellView<M>(state, local, slot),
+                                    [&](const Inflow<dim>& f) {
+                                      out += max(0.0, -f.flux);
+                                      in += max(0.0, f.flux);
+                                    });
               out *= state.dt * state.water.density;
               const Real most = cell.solved && cell.kind == CellKind::soil
                                     ? cell.water + in * state.dt * state.water.density
                                     : largest_outflow * cell.water;
-              cell.limit = out > most ? most / out : 1;
+              state.nodes.donor[i] = {out > most ? most / out : 1, cell.water};
               if (out > most) state.nodes.limited[static_cast<std::size_t>(slot)] += out - most;
             });
   for (const Real held_back : state.nodes.limited) state.limited_water += held_back;
@@ -335,13 +373,38 @@ void limit_donors(State<M>& state) {
 /// in the last digits of the masses of their points, and at rest always to one side.
 inline constexpr Real least_exchange = 16 * std::numeric_limits<Real>::epsilon();
 
-/// Water that passes a face of a cell in the step, into it > 0 [kg].
+/// Water that a collected flux carries through a face in the step, upwards > 0 [kg].
+/// above, below: cells that own the pressures on both sides, -1: boundary.
 template <class M>
-Real passed_water(const State<M>& state, const Cell<State<M>::dim>& cell,
-                  const Inflow<State<M>::dim>& f) noexcept {
-  const Real limit = f.flux < 0 ? cell.limit : f.from ? f.from->limit : 1;
-  const Real dm = state.dt * state.water.density * limit * f.flux;
-  return f.from && std::fabs(dm) < least_exchange * min(cell.water, f.from->water) ? 0 : dm;
+Real passed_water(const State<M>& state, Real flux, std::int32_t above,
+                  std::int32_t below) noexcept {
+  const auto& donors = state.nodes.donor;
+  const auto at = [&](std::int32_t e) -> const Donor& {
+    return donors[static_cast<std::size_t>(e)];
+  };
+  const std::int32_t donor = flux < 0 ? above : below;
+  const Real dm = state.dt * state.water.density * (donor < 0 ? 1 : at(donor).limit) * flux;
+  const bool counts = above < 0 || below < 0 ||
+                      std::fabs(dm) >= least_exchange * min(at(above).water, at(below).water);
+  return counts ? dm : 0;
+}
+
+/// Turns the collected fluxes into the water that passes every face.
+template <class M>
+void find_passed_water(State<M>& state) {
+  constexpr int dim = State<M>::dim;
+  auto& nodes = state.nodes;
+  const auto owner = [&](std::int32_t e) { return nodes.dof[static_cast<std::size_t>(e)]; };
+  for_cells(state.grid, state.options.threads,
+            [&](std::int32_t e, const Index<dim>& local, int slot, int) {
+              const std::int32_t* tile = state.grid.tile(slot);
+              const int at = BlockGrid<dim>::tile_index(local);
+              Real* flux = &nodes.flux[static_cast<std::size_t>(e) * dim];
+              for (int d = 0; d < dim; ++d)
+                if (flux[d] != 0)
+                  flux[d] = passed_water(state, flux[d], owner(e),
+                                         owner(tile[at - BlockGrid<dim>::tile_stride(d)]));
+            });
 }
 
 /// Water gained by a cell; what passes held boundaries is added to the ledger of its block.
@@ -352,8 +415,7 @@ void find_gain(State<M>& state, const CellView<M>& view, Cell<State<M>::dim>& ce
   Real gain = 0, most = 0;
   cell.ground_axis = -1;
   for_collected_inflows(state, view, [&](const Inflow<State<M>::dim>& f) {
-    const Real dm = passed_water(state, cell, f);
-    gain += dm;
+    gain += f.flux;
     if (cell.kind == CellKind::free && std::fabs(f.flux) > most &&
         f.face->kind == FaceKind::to_free) {
       most = std::fabs(f.flux);
@@ -361,8 +423,8 @@ void find_gain(State<M>& state, const CellView<M>& view, Cell<State<M>::dim>& ce
       cell.ground = f.place;
     }
     if (!f.from && f.face->held >= 0 && !f.face->fed)
-      ledger[(first + static_cast<std::size_t>(f.face->held)) * 2 + (dm > 0 ? 0 : 1)] +=
-          std::fabs(dm);
+      ledger[(first + static_cast<std::size_t>(f.face->held)) * 2 + (f.flux > 0 ? 0 : 1)] +=
+          std::fabs(f.flux);
   });
   cell.gain = gain;
 }
@@ -412,6 +474,7 @@ void find_gains(State<M>& state) {
 template <class M>
 void book_collected_fluxes(State<M>& state) {
   limit_donors(state);
+  find_passed_water(state);
   find_gains(state);
   settle_films(state);
 }

@@ -93,12 +93,12 @@ struct alignas(64) Cell {
   Real mean_stress = 0;    ///< mean Bishop stress of the skeleton in the cell [Pa]
 
   Real water = 0;                ///< M_c [kg]
-  Real limit = 1;                ///< donor limiter on outflow
   Real gain = 0;                 ///< water received in the step [kg]
   Real mean_velocity[Dim] = {};  ///< of the water it holds, new, mass weighted [m/s]
   Real skeleton_rate = 0;        ///< div v^s [1/s]
   /// Of air-filled pores in the last step, NaN: not known; in unsaturated models [m3/s].
   Real closing = unset;
+  Real change = 0;  ///< of the pressure over the step, of soil or where solved for [Pa]
 
   Real momentum_gain[Dim] = {};  ///< velocity change by exchanged momentum [m/s]
   Real low = 0, high = 0;        ///< bracket of the pressure while it is sought [Pa]
@@ -111,11 +111,16 @@ struct alignas(64) Cell {
   /// Liquid pressure at the surface of a cell at air, across each axis: as held there, else that of the
   /// cell itself (a closed surface carries it) [Pa].
   Real reference_pressure[Dim] = {};
-  Real change = 0;  ///< of the pressure over the step, of soil or where solved for [Pa]
+  Real near_water = 0;  ///< free water weighted by its nearness to `ground` [kg]
 
   Real reference_share[Dim] = {};  ///< part of reference_pressure that follows that of the cell [-]
-  Real near_water = 0;             ///< free water weighted by its nearness to `ground` [kg]
   Real ground = 0;                 ///< place on its axis of the face to soil that passes most [m]
+};
+
+/// What faces need to know of a cell that gives water.
+struct Donor {
+  Real limit = 1;  ///< part of its outflow that it can give [-]
+  Real water = 0;  ///< Cell::water [kg]
 };
 
 /// What a face between two cells is.
@@ -192,10 +197,13 @@ struct GridState {
   std::vector<Real> head;
   std::vector<Real> soil;     ///< 1 for cells of soil, 0 for others: what points read of them [-]
   std::vector<Real> filling;  ///< mass per pore volume of saturated soil, else 0 [kg/m3]
-  std::vector<Real> rate;     ///< div v^s of the same cell; NaN where there is none [1/s]
+  std::vector<Real> rate;  ///< div v^s of the soil cell whose pressure a cell uses; NaN: none [1/s]
   std::vector<std::int32_t> dof;  ///< entry of the cell whose pressure a cell uses, -1: none
   std::vector<FaceFlux> face;     ///< Dim per cell
-  std::vector<Real> flux;         ///< FaceFlux::flux of them, as loops over neighbours read it
+  /// FaceFlux::flux of them, as loops over neighbours read it; then the water that passes in the step,
+  /// upwards along the axis [kg].
+  std::vector<Real> flux;
+  std::vector<Donor> donor;               ///< one per cell that owns its pressure
   std::vector<CarriedNode<Dim>> carried;  ///< in ascending order, once per carrying cell
   std::vector<std::uint16_t> node_flags;  ///< walls and prescribed motion, see NodeFlag
 };

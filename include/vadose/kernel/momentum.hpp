@@ -39,7 +39,7 @@ void advance_node(State<M>& state, const CellView<M>& view, [[maybe_unused]] con
       skeleton_volume = state.nodes.solid_in[i][lane::volume];
     else if constexpr (has_skeleton<M>)
       skeleton_volume = sums.soil_volume;
-    porosity = sums.porosity();
+    porosity = sums.porosity;
     for (int d = 0; d < dim; ++d) node.solid_force[d] += sums.skeleton_force[d];
     Real open[dim] = {};
     pressure_forces(sums, skeleton_volume, state.water.density, node, open);

@@ -128,24 +128,14 @@ void apply_special(const State<M>& state, std::int32_t entry, NodeMotion<State<M
     if (d != n) node.solid[d] *= keep;
 }
 
-/// Soil is not drier than this for the drag [-].
-inline constexpr Real least_saturation = 1e-12;
-
-/// DEVIATION: [Zhan] Eq. (20) prints n m g / k without S; Eq. (2) has it, and so has this.
-/// Drag per velocity of a node along each axis for a law linear in the relative velocity: its
-/// coefficient, per volume of liquid, times the liquid volume in the soil at the node. That is the mass
-/// that carries force and momentum, so that the answer of the liquid, k / gamma in the drag limit, does
-/// not depend on it: with the upstream n S V in its place soil of S = 0.3 would let in a third of what
-/// enters. A quadratic part is linearised at the closed-form root (see below).
-template <class M>
-Real drag_coefficient(const State<M>& state, const NodeSums<State<M>::dim>& sums,
-                      Real liquid_volume, int axis) {
-  const Real s = max(sums.saturation[axis], least_saturation);
-  const Real k = sums.conductivity[axis];
-  const auto& material = state.soils[sums.material].material;
-  if (!(k > 0)) return 1e30;
-  return liquid_volume *
-         drag::coefficient<Real>(material.drag, sums.porosity(), s, k, material.unit_weight);
+/// Drag per velocity of a node along an axis for a law linear in the relative velocity, of a volume of liquid
+/// [kg/s]. That of the liquid in the soil at the node is the mass that carries force and momentum, so that
+/// the answer of the liquid, k / gamma in the drag limit, does not depend on it: with the upstream n S V in
+/// its place soil of S = 0.3 would let in a third of what enters. A quadratic part is linearised at the
+/// closed-form root (see below).
+template <int Dim>
+Real drag_coefficient(const NodeSums<Dim>& sums, Real liquid_volume, int axis) noexcept {
+  return sums.drag[axis] > 0 ? liquid_volume * sums.drag[axis] : 1e30;
 }
 
 /// Factor 1 + B |w| / A by which a quadratic drag term raises the linear coefficient, with |w|
@@ -170,7 +160,7 @@ Real quadratic_drag_factor(const State<M>& state, const NodeSums<State<M>::dim>&
       s += max(sums.saturation[d], least_saturation) / dim;
     }
     const auto& material = state.soils[sums.material].material;
-    const Real b = liquid_volume * drag::quadratic<Real>(material.drag, sums.porosity(), s, k,
+    const Real b = liquid_volume * drag::quadratic<Real>(material.drag, sums.porosity, s, k,
                                                          material.unit_weight, state.water.density);
     const Real p = 1 + state.dt * inverse * a;
     const Real q = state.dt * inverse * b;
@@ -192,7 +182,7 @@ void advance_pair(const State<M>& state, const NodeSums<State<M>::dim>& sums,
   Real linear[dim] = {};
   Real factor = 1;
   if (drags) {
-    for (int d = 0; d < dim; ++d) linear[d] = drag_coefficient(state, sums, liquid_volume, d);
+    for (int d = 0; d < dim; ++d) linear[d] = drag_coefficient(sums, liquid_volume, d);
     factor = quadratic_drag_factor(state, sums, liquid_volume, node, linear);
   }
   for (int d = 0; d < dim; ++d) {
@@ -282,8 +272,8 @@ void store_velocities(State<M>& state, std::size_t i, const NodeMotion<State<M>:
 template <class M>
 Real resistance(const State<M>& state, const NodeSums<State<M>::dim>& sums, int axis) noexcept {
   if (!(sums.soil_volume > 0) || !(sums.conductivity[axis] > 0)) return 0;
-  return (state.water.density / state.dt + drag_coefficient(state, sums, sums.soil_share(), axis)) /
-         sums.porosity();
+  return (state.water.density / state.dt + drag_coefficient(sums, sums.soil_share(), axis)) /
+         sums.porosity;
 }
 
 /// Writes the results of one node.

@@ -5,6 +5,7 @@
 /// What cells and faces bring to the nodes around them.
 
 #include <algorithm>
+#include <array>
 
 #include <vadose/kernel/faces.hpp>
 #include <vadose/kernel/map_to_grid.hpp>
@@ -18,8 +19,9 @@ struct NodeSums {
   /// G_I = sum f V_c (p - p_ref) grad N_I [N]; p_ref is the pressure at the surface or held wall
   /// that the node's cells end at, so that uniform pressure is at rest for any cut.
   Real force[Dim] = {};
-  Real gradient[Dim] = {};   ///< sum f V_c grad N_I, zero inside [m2]
-  Real reference[Dim] = {};  ///< sums of reference pressures of the cells around [Pa]
+  Real gradient[Dim] = {};  ///< sum f V_c grad N_I, zero inside [m2]
+  Real reference[Dim] =
+      {};  ///< sums of reference pressures of the cells around, where they count [Pa]
   int references = 0;
   Real soil_force[Dim] = {};      ///< sum f V_c S p grad N_I [N]
   Real skeleton_force[Dim] = {};  ///< - sum f V_c (mean Bishop stress) grad N_I [N]
@@ -28,6 +30,11 @@ struct NodeSums {
   Real saturation[Dim] = {};      ///< upstream, mean over the faces across an axis
   Real conductivity[Dim] = {};
   Real head_gradient[Dim] = {};
+  Real drag[Dim] =
+      {};  ///< linear, per velocity and volume of liquid; 0: the water is stuck [kg/(m3 s)]
+  /// Of the control volume; that of free water is 1. Volumetric, so that a trace of solid at a node
+  /// does not make it soil.
+  Real porosity = 1;
   std::uint8_t material = 0;
   int soil_cells = 0;           ///< cells around that hold soil
   bool closed_surface = false;  ///< touches soil and air, and no water passes
@@ -37,11 +44,6 @@ struct NodeSums {
 
   /// Part of the control volume that is soil; the rest is free water [-].
   Real soil_share() const noexcept { return soil_volume > 0 ? min(1.0, soil_volume / volume) : 0; }
-  /// Of the control volume; that of free water is 1. Volumetric, so that a trace of solid at a node
-  /// does not make it soil.
-  Real porosity() const noexcept {
-    return soil_volume > 0 ? 1 - (1 - pores / soil_volume) * soil_share() : 1;
-  }
 };
 
 /// Value and gradient of the hat function of corner `corner` (0 or 1 per axis) of a cell.
@@ -120,29 +122,6 @@ void prepare_cell(const State<M>& state, const Cell<State<M>::dim>& c,
   plain[cell_lane::over_radius] = State<M>::Kinematics::axisymmetric ? 1 / c.quad_point[0] : 0;
 }
 
-/// The records of all cells around the nodes of a block.
-template <class M>
-struct CellParts {
-  static constexpr int dim = State<M>::dim;
-  const Record* weighted;
-  const Record* plain;
-
-  CellParts(State<M>& state, int slot, int thread)
-      : weighted(state.tile(thread, 2).record), plain(state.tile(thread, 3).record) {
-    const auto& grid = state.grid;
-    const Index<dim> first = grid.first_cell(slot);
-    for_cube<dim>(-1, Block<dim>::edge, [&](const Index<dim>& i) {
-      const int at = BlockGrid<dim>::tile_index(i);
-      const std::int32_t e = grid.tile(slot)[at];
-      if (state.nodes.dof[static_cast<std::size_t>(e)] != e) return;
-      Index<dim> cell = first;
-      for (int d = 0; d < dim; ++d) cell[d] += i[d];
-      prepare_cell(state, state.nodes.cell[static_cast<std::size_t>(e)], cell,
-                   state.tile(thread, 2).record[at], state.tile(thread, 3).record[at]);
-    });
-  }
-};
-
 /// Sums over the cells around a node, as they are added up.
 template <int Dim>
 struct CellSums {
@@ -208,64 +187,182 @@ std::size_t face_at_node(const State<M>& state, const std::int32_t* tile, int at
   return nodes.face[far].kind == FaceKind::inside ? near : far;
 }
 
+/// Lanes of what the lower faces of a cell bring to the nodes in them; three each, by axis.
+namespace face_lane {
+inline constexpr int saturation = 0;    ///< [-]
+inline constexpr int conductivity = 4;  ///< [m/s]
+// Second record:
+inline constexpr int head_gradient = 0;  ///< [Pa/m]
+inline constexpr int counts = 4;         ///< 1 where water can pass, 16 more at a surface
+}  // namespace face_lane
+
+/// By corner of a cell: 1 in lanes d and 4 + d where it is one of the lower face across axis d, else 0.
+template <int Dim>
+inline constexpr std::array<Record, 1 << Dim> in_lower_face = [] {
+  std::array<Record, 1 << Dim> marks;
+  for (std::size_t corner = 0; corner < marks.size(); ++corner)
+    for (std::size_t d = 0; d < Dim; ++d)
+      marks[corner].value[d] = marks[corner].value[4 + d] = (corner >> d) & 1 ? 0 : 1;
+  return marks;
+}();
+
+/// The two records of the lower faces of the cell at a place in a tile, as they count at its nodes.
+template <class M>
+void prepare_faces(const State<M>& state, const std::int32_t* tile, int at, Record& flow,
+                   Record& head) noexcept {
+  flow = head = Record{};
+  for (int d = 0; d < State<M>::dim; ++d) {
+    const FaceFlux& f = state.nodes.face[face_at_node(state, tile, at, d)];
+    if (f.kind == FaceKind::closed || f.is_shut()) continue;
+    flow[face_lane::saturation + d] = f.saturation;
+    flow[face_lane::conductivity + d] = f.conductivity;
+    head[face_lane::head_gradient + d] = f.head_gradient;
+    head[face_lane::counts + d] = f.kind == FaceKind::surface ? 17 : 1;
+  }
+}
+
+/// The records of all cells and faces around the nodes of a block.
+template <class M>
+struct CellParts {
+  static constexpr int dim = State<M>::dim;
+  const Record *weighted, *plain;  ///< of cells that own their pressure
+  const Record *flow, *head;       ///< of the lower faces of cells
+
+  CellParts(State<M>& state, int slot, int thread)
+      : weighted(state.tile(thread, 2).record),
+        plain(state.tile(thread, 3).record),
+        flow(state.tile(thread, 4).record),
+        head(state.tile(thread, 5).record) {
+    const auto& grid = state.grid;
+    const std::int32_t* tile = grid.tile(slot);
+    const Index<dim> first = grid.first_cell(slot);
+    for_cube<dim>(-1, Block<dim>::edge, [&](const Index<dim>& i) {
+      const int at = BlockGrid<dim>::tile_index(i);
+      prepare_faces(state, tile, at, state.tile(thread, 4).record[at],
+                    state.tile(thread, 5).record[at]);
+      const auto e = static_cast<std::size_t>(tile[at]);
+      if (state.nodes.dof[e] != tile[at]) return;
+      Index<dim> cell = first;
+      for (int d = 0; d < dim; ++d) cell[d] += i[d];
+      prepare_cell(state, state.nodes.cell[e], cell, state.tile(thread, 2).record[at],
+                   state.tile(thread, 3).record[at]);
+    });
+  }
+};
+
+/// Sums over the faces whose planes go through a node, as they are added up: the lower faces of the cells on
+/// its upper side.
+template <int Dim>
+struct FaceSums {
+  Lanes flow{0.0}, head{0.0};
+
+  /// Adds those of a cell of which the node is the corner with that number.
+  VADOSE_INLINE void add(const Record& flows, const Record& heads, std::size_t corner) noexcept {
+    const Lanes touches = Lanes::load(in_lower_face<Dim>[corner].value);
+    flow += touches * Lanes::load(flows.value);
+    head += touches * Lanes::load(heads.value);
+  }
+  /// Means along every axis that such faces cross, in place of those over the cells; whether one is open to air.
+  bool store(NodeSums<Dim>& node) const noexcept {
+    bool open = false;
+    for (int d = 0; d < Dim; ++d) {
+      const int counts = static_cast<int>(head[face_lane::counts + d]), faces = counts % 16;
+      open = open || counts >= 16;
+      if (faces > 0) {
+        node.saturation[d] = flow[face_lane::saturation + d] / faces;
+        node.conductivity[d] = flow[face_lane::conductivity + d] / faces;
+        node.head_gradient[d] = head[face_lane::head_gradient + d] / faces;
+      } else if (node.soil_cells > 0) {
+        node.saturation[d] /= node.soil_cells;
+        node.conductivity[d] /= node.soil_cells;
+      }
+    }
+    return open;
+  }
+};
+
+/// Soil is not drier than this for the drag [-].
+inline constexpr Real least_saturation = 1e-12;
+
+/// DEVIATION: [Zhan] Eq. (20) prints n m g / k without S; Eq. (2) has it, and so has this.
+/// Porosity of a node and its drag along each axis, from the sums over what is around it.
+template <class M>
+void find_drag(const State<M>& state, NodeSums<State<M>::dim>& node) noexcept {
+  if (!(node.soil_volume > 0)) return;
+  node.porosity = 1 - (1 - node.pores / node.soil_volume) * node.soil_share();
+  if constexpr (has_skeleton<M>) {
+    const auto& material = state.soils[node.material].material;
+    for (int d = 0; d < State<M>::dim; ++d)
+      if (node.conductivity[d] > 0)
+        node.drag[d] = drag::coefficient<Real>(material.drag, node.porosity,
+                                               max(node.saturation[d], least_saturation),
+                                               node.conductivity[d], material.unit_weight);
+  }
+}
+
+/// Calls f(place in the tile, corner, its number) for the cells around a node, of which it is that corner.
+template <class M, class F>
+VADOSE_INLINE void for_cells_at(const CellView<M>& node, F&& f) {
+  constexpr int dim = State<M>::dim;
+  for_cube<dim>(0, 2, [&](const Index<dim>& corner) {
+    int at = node.at;
+    std::size_t number = 0;
+    for (int d = 0; d < dim; ++d) {
+      at -= corner[d] * BlockGrid<dim>::tile_stride(d);
+      number += static_cast<std::size_t>(corner[d]) << d;
+    }
+    f(at, corner, number);
+  });
+}
+
+/// Takes what is held at the surfaces and walls that the cells around a node end at off its pressure force.
+template <class M>
+void take_reference(const State<M>& state, const CellView<M>& view,
+                    NodeSums<State<M>::dim>& node) noexcept {
+  constexpr int dim = State<M>::dim;
+  for_cells_at(view, [&](int at, const Index<dim>&, std::size_t) {
+    const std::int32_t e = view.tile[at];
+    if (state.nodes.dof[static_cast<std::size_t>(e)] != e) return;
+    const auto& cell = state.nodes.cell[static_cast<std::size_t>(e)];
+    if (cell.has_reference)
+      for (int d = 0; d < dim; ++d) node.reference[d] += cell.reference_pressure[d];
+  });
+  for (int d = 0; d < dim; ++d)
+    node.force[d] -= node.reference[d] / node.references * node.gradient[d];
+}
+
 /// Gathers cells and faces around a node (local index in its block).
 template <class M>
 NodeSums<State<M>::dim> gather_node(const State<M>& state, const CellView<M>& view,
                                     const CellParts<M>& parts) {
   constexpr int dim = State<M>::dim;
   const auto& nodes = state.nodes;
-  NodeSums<dim> node;
-  int air = 0, faces[dim] = {};
-  Real saturation[dim] = {}, conductivity[dim] = {}, gradient[dim] = {};
-  bool open = false;
-  CellSums<dim> sums;
   const Real over_h = 1 / state.grid.cell_size();
-  for_cube<dim>(0, 2, [&](const Index<dim>& corner) {
-    // The cell of which this node is corner `corner`.
-    int at = view.at;
-    bool inside = true;
-    for (int d = 0; d < dim; ++d) {
-      const int cell = view.cell[d] - corner[d];
-      at -= corner[d] * BlockGrid<dim>::tile_stride(d);
-      inside = inside && cell >= 0 && cell < state.grid.cells()[d];
-    }
+  const bool several = state.soils.size() > 1;
+  NodeSums<dim> node;
+  CellSums<dim> cells;
+  FaceSums<dim> faces;
+  bool air = false;
+  for_cells_at(view, [&](int at, const Index<dim>& corner, std::size_t number) {
+    faces.add(parts.flow[at], parts.head[at], number);
     const auto e = static_cast<std::size_t>(view.tile[at]);
-    const std::int32_t owner = nodes.dof[e];
-    if (inside && owner < 0) ++air;
-    if (inside && owner == view.tile[at]) {
-      sums.add(parts.weighted[at], parts.plain[at], corner, over_h);
-      if (nodes.cell[e].has_reference)
-        for (int d = 0; d < dim; ++d) node.reference[d] += nodes.cell[e].reference_pressure[d];
-      if (state.soils.size() > 1 && nodes.cell[e].soil_share > 0)
-        node.material = nodes.cell[e].material;
-    }
-    // Faces whose plane goes through the node: lower faces of the cells on its upper side.
-    for (int d = 0; d < dim; ++d) {
-      if (corner[d]) continue;
-      const FaceFlux& f = nodes.face[face_at_node(state, view.tile, at, d)];
-      if (f.kind == FaceKind::closed || f.is_shut()) continue;
-      open = open || f.kind == FaceKind::surface;
-      ++faces[d];
-      saturation[d] += f.saturation;
-      conductivity[d] += f.conductivity;
-      gradient[d] += f.head_gradient;
+    if (nodes.dof[e] == view.tile[at]) {
+      cells.add(parts.weighted[at], parts.plain[at], corner, over_h);
+      if (several && nodes.cell[e].soil_share > 0) node.material = nodes.cell[e].material;
+    } else if (nodes.dof[e] < 0) {
+      bool inside = true;
+      for (int d = 0; d < dim; ++d) {
+        const int cell = view.cell[d] - corner[d];
+        inside = inside && cell >= 0 && cell < state.grid.cells()[d];
+      }
+      air = air || inside;
     }
   });
-  sums.store(node);
-  if (node.references > 0 && !node.has_free)
-    for (int d = 0; d < dim; ++d)
-      node.force[d] -= node.reference[d] / node.references * node.gradient[d];
-  for (int d = 0; d < dim; ++d) {
-    if (faces[d] > 0) {
-      node.saturation[d] = saturation[d] / faces[d];
-      node.conductivity[d] = conductivity[d] / faces[d];
-      node.head_gradient[d] = gradient[d] / faces[d];
-    } else if (node.soil_cells > 0) {
-      node.saturation[d] /= node.soil_cells;
-      node.conductivity[d] /= node.soil_cells;
-    }
-  }
-  node.closed_surface = node.soil_cells > 0 && air > 0 && !open && !node.has_free;
+  cells.store(node);
+  const bool open = faces.store(node);
+  if (node.references > 0 && !node.has_free) take_reference(state, view, node);
+  node.closed_surface = node.soil_cells > 0 && air && !open && !node.has_free;
+  find_drag(state, node);
   return node;
 }
 

@@ -22,6 +22,28 @@ Real hydrostatic(const State<M>& state, const Real (&from)[State<M>::dim],
   return dp;
 }
 
+/// K* = S / (S/K + S_p) of soil from theta' = n (S/K + S_p) exp(p/K) summed over the cell [Pa].
+template <int Dim>
+Real effective_modulus(const Cell<Dim>& cell, Real compression) noexcept {
+  return cell.saturation * compression * cell.pore_volume / max(cell.storage, 1e-30);
+}
+
+/// What follows from the pressure of a cell once it is found.
+template <class M>
+void finish_cell(const State<M>& state, Cell<State<M>::dim>& cell) noexcept {
+  cell.quad_pressure = cell.pressure + hydrostatic(state, cell.centroid, cell.quad_point);
+  if (cell.kind == CellKind::free) {
+    cell.saturation = 1;
+    cell.quad_pressure = max(0.0, cell.quad_pressure);  // water does not pull on air
+  } else if constexpr (is_unsaturated<M>) {
+    const Real compression = std::exp(cell.pressure / state.water.bulk_modulus);
+    cell.saturation = min(1.0, cell.content / (cell.pore_volume * compression));
+    cell.modulus = effective_modulus(cell, compression);
+  } else {
+    cell.modulus = state.water.bulk_modulus;
+  }
+}
+
 /// Calls f(cell, entry, slot) for every cell that owns a pressure.
 template <class M, class F>
 void for_pressure_cells(State<M>& state, F&& f) {
@@ -44,6 +66,7 @@ void solve_saturated(State<M>& state) {
       cell.pressure =
           bulk_modulus * std::log(cell.water / (state.water.density * cell.pore_volume));
     cell.storage = cell.pore_volume / bulk_modulus * std::exp(cell.pressure / bulk_modulus);
+    finish_cell(state, cell);
   });
 }
 
@@ -255,35 +278,38 @@ void improve_pressures(State<M>& state, int slot) {
     cell.content = state.frozen ? sums[lane::content] : target;
     const bool found = state.frozen || improve_pressure(cell, sums[lane::content],
                                                         sums[lane::storage], target, floor);
-    if (found)
+    if (found) {
       cell.low = 1, cell.high = 0;  // not touched again
-    else
+      finish_cell(state, cell);
+    } else {
       nodes.retry[static_cast<std::size_t>(slot)] = 1;
+    }
   });
+}
+
+/// More than the head differs by over a cell and its slivers [Pa].
+template <class M>
+Real head_span(const State<M>& state) noexcept {
+  return 2 * state.water.density * state.gravity.norm() * state.grid.cell_size() + 1;
+}
+
+/// Bounds of the search for the pressure of a soil cell.
+template <class M>
+void begin_search(const State<M>& state, Real span, Cell<State<M>::dim>& cell) noexcept {
+  const Real filling = cell.water / (state.water.density * cell.pore_volume);
+  const Real compressed = filling > 1 ? state.water.bulk_modulus * std::log(filling) : 0;
+  cell.high = compressed + span;
+  cell.low = state.soils[cell.material].pressure_floor - span;
+  if (!state.frozen) cell.pressure = min(max(cell.pressure, cell.low), cell.high);
 }
 
 /// Pressure of unsaturated cells: sum V theta(p_c + rho g (x - x_c), n) = M / rho_l0.
 template <class M>
 void solve_unsaturated(State<M>& state) {
-  constexpr int dim = State<M>::dim;
   constexpr int max_passes = 60;
   auto& nodes = state.nodes;
-  // Bounds: over a cell and its slivers the head differs by less than `span`.
-  const Real span = 2 * state.water.density * state.gravity.norm() * state.grid.cell_size() + 1;
-  for_pressure_cells(state, [&](Cell<dim>& cell, std::int32_t, int) {
-    if (cell.kind != CellKind::soil) return;
-    const Real filling = cell.water / (state.water.density * cell.pore_volume);
-    const Real compressed = filling > 1 ? state.water.bulk_modulus * std::log(filling) : 0;
-    cell.high = compressed + span;
-    cell.low = state.soils[cell.material].pressure_floor - span;
-    if (!state.frozen) cell.pressure = min(max(cell.pressure, cell.low), cell.high);
-  });
-  for (int pass = 0; pass < max_passes; ++pass) {
-    clear_content(state);
-    if (pass == 0)
-      sum_content(state);
-    else
-      sum_content<false, true>(state);
+  sum_content(state);
+  for (int pass = 1;; ++pass) {
     nodes.sought = nodes.retry;
     std::fill(nodes.retry.begin(), nodes.retry.end(), char{0});
     parallel_for(static_cast<std::size_t>(state.grid.slots()), state.options.threads,
@@ -292,32 +318,35 @@ void solve_unsaturated(State<M>& state) {
                  });
     bool any = false;
     for (const char r : nodes.retry) any = any || r;
-    if (!any) break;
+    if (!any) return;
+    if (pass == max_passes) break;
     nodes.sought = nodes.retry;  // points beyond their block count in its neighbours too
     widen_marks(state.grid, nodes.sought, nodes.retry);
+    clear_content(state);
+    sum_content<false, true>(state);
   }
+  for_pressure_cells(state, [&](Cell<State<M>::dim>& cell, std::int32_t, int) {
+    if (cell.kind == CellKind::soil && !is_found(cell)) finish_cell(state, cell);
+  });
 }
 
-/// K* = S / (S/K + S_p) of soil from theta' = n (S/K + S_p) exp(p/K) summed over the cell [Pa].
-template <int Dim>
-Real effective_modulus(const Cell<Dim>& cell, Real compression) noexcept {
-  return cell.saturation * compression * cell.pore_volume / max(cell.storage, 1e-30);
-}
-
-/// What follows from the pressure of a cell once it is found.
+/// Gathers every cell that owns its pressure, and begins the search for it.
 template <class M>
-void finish_cell(const State<M>& state, Cell<State<M>::dim>& cell) noexcept {
-  cell.quad_pressure = cell.pressure + hydrostatic(state, cell.centroid, cell.quad_point);
-  if (cell.kind == CellKind::free) {
-    cell.saturation = 1;
-    cell.quad_pressure = max(0.0, cell.quad_pressure);  // water does not pull on air
-  } else if constexpr (is_unsaturated<M>) {
-    const Real compression = std::exp(cell.pressure / state.water.bulk_modulus);
-    cell.saturation = min(1.0, cell.content / (cell.pore_volume * compression));
-    cell.modulus = effective_modulus(cell, compression);
-  } else {
-    cell.modulus = state.water.bulk_modulus;
-  }
+void gather_cells(State<M>& state) {
+  [[maybe_unused]] const Real span = head_span(state);
+  for_cells(state.grid, state.options.threads,
+            [&](std::int32_t e, const Index<State<M>::dim>& local, int slot, int) {
+              auto& cell = state.nodes.cell[static_cast<std::size_t>(e)];
+              if (state.nodes.dof[static_cast<std::size_t>(e)] != e) {
+                if constexpr (is_unsaturated<M>) cell.closing = unset;
+                return;
+              }
+              gather_cell(state, CellView<M>(state, local, slot));
+              if (cell.kind == CellKind::free)
+                finish_cell(state, cell);
+              else if constexpr (is_unsaturated<M>)
+                begin_search(state, span, cell);
+            });
 }
 
 /// Steps 1 and 2: cells and their pressures from the points.
@@ -335,8 +364,6 @@ void find_pressures(State<M>& state) {
   } else if constexpr (has_skeleton<M>) {
     solve_saturated(state);
   }
-  for_pressure_cells(
-      state, [&](Cell<State<M>::dim>& cell, std::int32_t, int) { finish_cell(state, cell); });
 }
 
 }  // namespace vadose::kernel

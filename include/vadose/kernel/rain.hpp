@@ -258,7 +258,9 @@ void settle_films(State<M>& state) {
   for_fed_faces(state, [&](const FaceFlux& face, const CellView<M>& view, int axis) {
     if (face.flux == 0) return;
     const Real into = face.soil_below ? -face.flux : face.flux;
-    const Real limit = into < 0 ? soil_cell(view, axis, face).limit : 1;
+    const auto owner = static_cast<std::size_t>(
+        state.nodes.dof[static_cast<std::size_t>(soil_at(view, axis, face))]);
+    const Real limit = into < 0 ? state.nodes.donor[owner].limit : 1;
     state.columns[column_at_face(state, view, axis, face, into > 0)].film -=
         mass_per_flux * limit * into;
   });

@@ -286,7 +286,8 @@ struct State {
   CompensatedSum added_solid;            ///< the same of the grains [kg]
   std::int64_t next_liquid_id = 0;       ///< of the next liquid point
 
-  AlignedVector<kernel::Tile<dim>> tiles;  ///< four per thread
+  static constexpr int tiles_per_thread = 6;
+  AlignedVector<kernel::Tile<dim>> tiles;  ///< six per thread
   std::vector<StepSums> sums;              ///< one per thread
   /// Of the last step.
   Trouble trouble;
@@ -295,7 +296,7 @@ struct State {
   int free_group() const noexcept { return static_cast<int>(soils.size()); }
   /// Scratch tile of a thread: 0 and 1 are zero between uses, 2 and 3 are read into.
   kernel::Tile<dim>& tile(int thread, int use = 0) noexcept {
-    return tiles[static_cast<std::size_t>(4 * thread + use)];
+    return tiles[static_cast<std::size_t>(tiles_per_thread * thread + use)];
   }
   /// Volume of a cell (per metre, per radian): h^dim, times the radius of its centre.
   Real cell_volume(Real radius) const noexcept {

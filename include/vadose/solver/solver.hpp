@@ -341,6 +341,7 @@ class Solver {
       n.dof.assign(size, -1);
       n.face.assign(size * dim, {});
       n.flux.assign(size * dim, 0);
+      n.donor.assign(size, {});
       n.head.assign(size, 0);
       n.soil.assign(size, 0);
       n.rate.assign(size, unset);
@@ -502,7 +503,7 @@ Solver<M, Scheme>::Solver(const Scene<M>& scene, const Options& options) {
                     options.quasi_static};
   detail::assemble(state_, scene);
   collect_walls(scene);
-  state_.tiles.resize(static_cast<std::size_t>(4 * options.threads));
+  state_.tiles.resize(static_cast<std::size_t>(State<M>::tiles_per_thread * options.threads));
   state_.sums.resize(static_cast<std::size_t>(options.threads));
   sort();
   remember_start();
