@@ -286,8 +286,8 @@ struct State {
   CompensatedSum added_solid;            ///< the same of the grains [kg]
   std::int64_t next_liquid_id = 0;       ///< of the next liquid point
 
-  static constexpr int tiles_per_thread = 6;
-  AlignedVector<kernel::Tile<dim>> tiles;  ///< six per thread
+  static constexpr int tiles_per_thread = 6;  ///< see tile()
+  AlignedVector<kernel::Tile<dim>> tiles;  ///< tiles_per_thread each
   std::vector<StepSums> sums;              ///< one per thread
   /// Of the last step.
   Trouble trouble;
