@@ -287,14 +287,14 @@ struct State {
   std::int64_t next_liquid_id = 0;       ///< of the next liquid point
 
   static constexpr int tiles_per_thread = 6;  ///< see tile()
-  AlignedVector<kernel::Tile<dim>> tiles;  ///< tiles_per_thread each
-  std::vector<StepSums> sums;              ///< one per thread
+  AlignedVector<kernel::Tile<dim>> tiles;     ///< tiles_per_thread each
+  std::vector<StepSums> sums;                 ///< one per thread
   /// Of the last step.
   Trouble trouble;
 
   /// Group of free water among liquid points.
   int free_group() const noexcept { return static_cast<int>(soils.size()); }
-  /// Scratch tile of a thread: 0 and 1 are zero between uses, 2 and 3 are read into.
+  /// Scratch tile of a thread: 0 and 1 are zero between uses, the others are read into.
   kernel::Tile<dim>& tile(int thread, int use = 0) noexcept {
     return tiles[static_cast<std::size_t>(tiles_per_thread * thread + use)];
   }
