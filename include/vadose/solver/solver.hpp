@@ -471,7 +471,9 @@ class Solver {
     if constexpr (has_liquid<M>) {
       bytes += state_.liquid.batches() * State<M>::Liquid::stride * 8;
       records += 8;
-      bytes += state_.grid.size() * (sizeof(Cell<dim>) + dim * sizeof(FaceFlux) + 4);
+      constexpr std::size_t numbers = 4 + dim;  // head, soil, filling, rate and fluxes
+      bytes += state_.grid.size() * (sizeof(Cell<dim>) + dim * sizeof(FaceFlux) + sizeof(Donor) +
+                                     numbers * sizeof(Real) + sizeof(std::int32_t));
     }
     return bytes + state_.grid.size() * (records * sizeof(Record) + 2);
   }
