@@ -206,12 +206,14 @@ inline constexpr std::array<Record, 1 << Dim> in_lower_face = [] {
   return marks;
 }();
 
-/// The two records of the lower faces of the cell at a place in a tile, as they count at its nodes.
+/// The two records of the lower faces of a cell in or below a block, as they count at the block's nodes.
 template <class M>
-void prepare_faces(const State<M>& state, const std::int32_t* tile, int at, Record& flow,
-                   Record& head) noexcept {
+void prepare_faces(const State<M>& state, const std::int32_t* tile,
+                   const Index<State<M>::dim>& local, Record& flow, Record& head) noexcept {
+  const int at = BlockGrid<State<M>::dim>::tile_index(local);
   flow = head = Record{};
   for (int d = 0; d < State<M>::dim; ++d) {
+    if (local[d] < 0) continue;  // its lower face lies below the nodes of the block
     const FaceFlux& f = state.nodes.face[face_at_node(state, tile, at, d)];
     if (f.kind == FaceKind::closed || f.is_shut()) continue;
     flow[face_lane::saturation + d] = f.saturation;
@@ -238,7 +240,7 @@ struct CellParts {
     const Index<dim> first = grid.first_cell(slot);
     for_cube<dim>(-1, Block<dim>::edge, [&](const Index<dim>& i) {
       const int at = BlockGrid<dim>::tile_index(i);
-      prepare_faces(state, tile, at, state.tile(thread, 4).record[at],
+      prepare_faces(state, tile, i, state.tile(thread, 4).record[at],
                     state.tile(thread, 5).record[at]);
       const auto e = static_cast<std::size_t>(tile[at]);
       if (state.nodes.dof[e] != tile[at]) return;
