@@ -166,13 +166,9 @@ struct FaceHeads {
     Lanes drives(0.0), means(0.0);  // in lanes 0 .. 2, in lanes 4 .. 6
     for_cube<dim>(0, 2, [&](const Index<dim>& corner) {
       int at = view.at;
-      std::size_t number = 0;
-      for (int d = 0; d < dim; ++d) {
-        at += corner[d] * BlockGrid<dim>::tile_stride(d);
-        number += static_cast<std::size_t>(corner[d]) << d;
-      }
+      for (int d = 0; d < dim; ++d) at += corner[d] * BlockGrid<dim>::tile_stride(d);
       const auto i = static_cast<std::size_t>(view.tile[at]);
-      const Lanes touches = Lanes::load(in_lower_face<dim>[number].value);
+      const Lanes touches = lower_faces_at(corner);
       const Lanes relative = Lanes::load(nodes.relative[i].value);
       drives += swap_halves(Lanes::load(nodes.mixture[i].value)) * touches * relative;
       means += touches * relative;

@@ -187,6 +187,14 @@ std::size_t face_at_node(const State<M>& state, const std::int32_t* tile, int at
   return nodes.face[far].kind == FaceKind::inside ? near : far;
 }
 
+/// Corner number of a cube index of zeros and ones.
+template <int Dim>
+constexpr int corner_number(const Index<Dim>& corner) noexcept {
+  int number = 0;
+  for (int d = 0; d < Dim; ++d) number += corner[d] << d;
+  return number;
+}
+
 /// Lanes of what the lower faces of a cell bring to the nodes in them; three each, by axis.
 namespace face_lane {
 inline constexpr int saturation = 0;    ///< [-]
@@ -205,6 +213,12 @@ inline constexpr std::array<Record, 1 << Dim> in_lower_face = [] {
       marks[corner].value[d] = marks[corner].value[4 + d] = (corner >> d) & 1 ? 0 : 1;
   return marks;
 }();
+
+/// in_lower_face of a corner, as lanes.
+template <int Dim>
+VADOSE_INLINE Lanes lower_faces_at(const Index<Dim>& corner) noexcept {
+  return Lanes::load(in_lower_face<Dim>[static_cast<std::size_t>(corner_number(corner))].value);
+}
 
 /// The two records of the lower faces of a cell in or below a block, as they count at the block's nodes.
 template <class M>
@@ -258,9 +272,10 @@ template <int Dim>
 struct FaceSums {
   Lanes flow{0.0}, head{0.0};
 
-  /// Adds those of a cell of which the node is the corner with that number.
-  VADOSE_INLINE void add(const Record& flows, const Record& heads, std::size_t corner) noexcept {
-    const Lanes touches = Lanes::load(in_lower_face<Dim>[corner].value);
+  /// Adds those of a cell of which the node is corner `corner`.
+  VADOSE_INLINE void add(const Record& flows, const Record& heads,
+                         const Index<Dim>& corner) noexcept {
+    const Lanes touches = lower_faces_at(corner);
     flow += touches * Lanes::load(flows.value);
     head += touches * Lanes::load(heads.value);
   }
@@ -302,19 +317,25 @@ void find_drag(const State<M>& state, NodeSums<State<M>::dim>& node) noexcept {
   }
 }
 
-/// Calls f(place in the tile, corner, its number) for the cells around a node, of which it is that corner.
+/// Calls f(place in the tile, corner) for the cells around a node, of which it is that corner.
 template <class M, class F>
 VADOSE_INLINE void for_cells_at(const CellView<M>& node, F&& f) {
   constexpr int dim = State<M>::dim;
   for_cube<dim>(0, 2, [&](const Index<dim>& corner) {
     int at = node.at;
-    std::size_t number = 0;
-    for (int d = 0; d < dim; ++d) {
-      at -= corner[d] * BlockGrid<dim>::tile_stride(d);
-      number += static_cast<std::size_t>(corner[d]) << d;
-    }
-    f(at, corner, number);
+    for (int d = 0; d < dim; ++d) at -= corner[d] * BlockGrid<dim>::tile_stride(d);
+    f(at, corner);
   });
+}
+
+/// Whether the cell of which a node is that corner lies in the box.
+template <class M>
+bool is_in_box(const CellView<M>& node, const Index<State<M>::dim>& corner) noexcept {
+  for (int d = 0; d < State<M>::dim; ++d) {
+    const int cell = node.cell[d] - corner[d];
+    if (cell < 0 || cell >= node.state.grid.cells()[d]) return false;
+  }
+  return true;
 }
 
 /// Takes what is held at the surfaces and walls that the cells around a node end at off its pressure force.
@@ -322,7 +343,7 @@ template <class M>
 void take_reference(const State<M>& state, const CellView<M>& view,
                     NodeSums<State<M>::dim>& node) noexcept {
   constexpr int dim = State<M>::dim;
-  for_cells_at(view, [&](int at, const Index<dim>&, std::size_t) {
+  for_cells_at(view, [&](int at, const Index<dim>&) {
     const std::int32_t e = view.tile[at];
     if (state.nodes.dof[static_cast<std::size_t>(e)] != e) return;
     const auto& cell = state.nodes.cell[static_cast<std::size_t>(e)];
@@ -345,19 +366,14 @@ NodeSums<State<M>::dim> gather_node(const State<M>& state, const CellView<M>& vi
   CellSums<dim> cells;
   FaceSums<dim> faces;
   bool air = false;
-  for_cells_at(view, [&](int at, const Index<dim>& corner, std::size_t number) {
-    faces.add(parts.flow[at], parts.head[at], number);
+  for_cells_at(view, [&](int at, const Index<dim>& corner) {
+    faces.add(parts.flow[at], parts.head[at], corner);
     const auto e = static_cast<std::size_t>(view.tile[at]);
     if (nodes.dof[e] == view.tile[at]) {
       cells.add(parts.weighted[at], parts.plain[at], corner, over_h);
       if (several && nodes.cell[e].soil_share > 0) node.material = nodes.cell[e].material;
     } else if (nodes.dof[e] < 0) {
-      bool inside = true;
-      for (int d = 0; d < dim; ++d) {
-        const int cell = view.cell[d] - corner[d];
-        inside = inside && cell >= 0 && cell < state.grid.cells()[d];
-      }
-      air = air || inside;
+      air = air || is_in_box(view, corner);
     }
   });
   cells.store(node);

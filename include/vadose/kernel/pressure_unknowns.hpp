@@ -12,14 +12,6 @@
 
 namespace vadose::kernel {
 
-/// Corner number of a cube index of zeros and ones.
-template <int Dim>
-constexpr int corner_number(const Index<Dim>& corner) noexcept {
-  int number = 0;
-  for (int d = 0; d < Dim; ++d) number += corner[d] << d;
-  return number;
-}
-
 /// Lists the unknowns: cells that own a pressure and are part of a body of soil or water.
 template <class M>
 void list_unknowns(State<M>& state) {
@@ -81,16 +73,8 @@ CellView<M> view_of(const State<M>& state, std::int32_t entry) noexcept {
 /// Calls f(corner number, entry) for the cells around a node; f(., -1) outside the box.
 template <class M, class F>
 void for_cells_around(const CellView<M>& node, F&& f) {
-  constexpr int dim = State<M>::dim;
-  for_cube<dim>(0, 2, [&](const Index<dim>& corner) {
-    int at = node.at;
-    bool inside = true;
-    for (int d = 0; d < dim; ++d) {
-      at -= corner[d] * BlockGrid<dim>::tile_stride(d);
-      const int c = node.cell[d] - corner[d];
-      inside = inside && c >= 0 && c < node.state.grid.cells()[d];
-    }
-    f(corner_number(corner), inside ? node.tile[at] : -1);
+  for_cells_at(node, [&](int at, const Index<State<M>::dim>& corner) {
+    f(corner_number(corner), is_in_box(node, corner) ? node.tile[at] : -1);
   });
 }
 
