@@ -36,7 +36,7 @@ namespace vd = vadose;
 // What the scene models.
 template <class Axes>
 struct CentrifugeSlope : vd::UnsaturatedModel<Axes> {
-  using Skeleton = vd::law::DruckerPrager;
+  using Skeleton = vd::law::WithOpening<vd::law::DruckerPrager>;
 };
 
 namespace {
@@ -94,13 +94,13 @@ vd::Material<M> silty_sand(const Choices& c) {
           .solid_density = solid_density,
           .porosity = porosity,
           .lambda = 0.89,
-          .skeleton = {.elastic = {.young_modulus = 10e6, .poisson_ratio = 0.33},  // [Pa], [-]
-                       .cohesion = 0,
-                       .friction_angle = vd::degrees(31.8),
-                       .dilation_angle = vd::degrees(-5.0),  // at the peak; 0 at critical state
-                       .tensile_strength = 0,
-                       .cone = c.cone,
-                       .mobilisation = {.peak_shear_strain = 0.01, .critical_shear_strain = 0.2}},
+          .skeleton = {{.elastic = {.young_modulus = 10e6, .poisson_ratio = 0.33},  // [Pa], [-]
+                        .cohesion = 0,
+                        .friction_angle = vd::degrees(31.8),
+                        .dilation_angle = vd::degrees(-5.0),  // at the peak; 0 at critical state
+                        .tensile_strength = 0,
+                        .cone = c.cone,
+                        .mobilisation = {.peak_shear_strain = 0.01, .critical_shear_strain = 0.2}}},
           .retention = {.residual_saturation = 0,
                         .a = 1.2,  // [1/m]
                         .porosity_dependent = !c.frozen_porosity},

@@ -30,7 +30,7 @@ namespace vd = vadose;
 
 // What the scene models, and its seepage alone.
 struct ClaySlope : vd::UnsaturatedModel<vd::PlaneStrain> {
-  using Skeleton = vd::law::DruckerPrager;
+  using Skeleton = vd::law::WithOpening<vd::law::DruckerPrager>;
 };
 struct RigidSlope : vd::UnsaturatedModel<vd::PlaneStrain> {
   using Skeleton = vd::law::Rigid;
@@ -92,12 +92,12 @@ vd::Material<M> sandy_clay(const Choices& c) {
                        .conductivity = {.saturated_conductivity = c.conductivity}};
   if constexpr (std::is_same_v<M, ClaySlope>) {
     clay.solid_density = solid_density;
-    clay.skeleton = {.elastic = {.young_modulus = 10e6, .poisson_ratio = 0.33},
-                     .cohesion = 0,
-                     .friction_angle = vd::degrees(c.friction_angle),
-                     .dilation_angle = 0,
-                     .tensile_strength = 0,
-                     .cone = c.cone};
+    clay.skeleton = {{.elastic = {.young_modulus = 10e6, .poisson_ratio = 0.33},
+                      .cohesion = 0,
+                      .friction_angle = vd::degrees(c.friction_angle),
+                      .dilation_angle = 0,
+                      .tensile_strength = 0,
+                      .cone = c.cone}};
   } else {
     clay.retention.porosity_dependent = false;
     clay.conductivity.porosity_dependent = false;

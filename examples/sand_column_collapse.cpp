@@ -36,7 +36,7 @@ namespace vd = vadose;
 
 // What the scene models: dry sand is the same model without water.
 struct SandColumn : vd::UnsaturatedModel<vd::PlaneStrain> {
-  using Skeleton = vd::law::DruckerPrager;
+  using Skeleton = vd::law::WithOpening<vd::law::DruckerPrager>;
 };
 
 namespace {
@@ -105,12 +105,12 @@ vd::Material<SandColumn> sand(const Choices& c) {
       .solid_density = solid_density,
       .porosity = porosity,
       .lambda = 0.63,
-      .skeleton = {.elastic = {.young_modulus = c.young_modulus, .poisson_ratio = c.poisson_ratio},
-                   .cohesion = 0,
-                   .friction_angle = vd::degrees(c.friction_angle),
-                   .dilation_angle = 0,
-                   .tensile_strength = 0,
-                   .cone = c.cone},
+      .skeleton = {{.elastic = {.young_modulus = c.young_modulus, .poisson_ratio = c.poisson_ratio},
+                    .cohesion = 0,
+                    .friction_angle = vd::degrees(c.friction_angle),
+                    .dilation_angle = 0,
+                    .tensile_strength = 0,
+                    .cone = c.cone}},
       .retention = {.residual_saturation = 0, .a = 18.4},
       .conductivity = {.saturated_conductivity = 4.41e-6}};
 }

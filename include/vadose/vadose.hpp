@@ -98,6 +98,7 @@
 #include <vadose/policy/law/rigid.hpp>
 #include <vadose/policy/law/strength.hpp>
 #include <vadose/policy/law/umat.hpp>
+#include <vadose/policy/law/with_opening.hpp>
 #include <vadose/policy/shape/gimp.hpp>
 #include <vadose/policy/shape/linear.hpp>
 #include <vadose/policy/shape/quadratic_b_spline.hpp>

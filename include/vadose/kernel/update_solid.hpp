@@ -32,12 +32,23 @@ VADOSE_INLINE void update_solid_batch(State<M>& state, std::size_t b,
   const Lanes hoop = motion.velocity[0] * over_radius<K, dim>(x, Real(0));
   auto rate = rate_of_deformation<n>(motion.gradient, hoop);
   Lanes volume_rate = rate.trace();
+  const auto& soil = state.soils[static_cast<std::size_t>(points.group(b))];
+  const Lanes grains = points.load(field::mass, b) * Lanes(1 / soil.material.solid_density);
   [[maybe_unused]] CellFinder<dim> cells;
   if constexpr (has_liquid<M>) cells.find(frame, x);
   if constexpr (RateByCell) {
     const Lanes own = volume_rate;
     volume_rate = cell_rates(state, cells, entries, own);
     rate.add_isotropic((volume_rate - own) * Lanes(1.0 / 3.0));
+  }
+  [[maybe_unused]] Lanes stretch;
+  if constexpr (has_liquid<M>) {
+    const Lanes n0 = Lanes(1.0) - grains / max(points.load(field::volume, b), Lanes(1e-300));
+    const Lanes strain = Lanes(dt) * volume_rate;
+    stretch = volume_stretch(state, cells, entries, n0, strain);
+    if constexpr (law::RemembersOpening<typename M::Skeleton>)
+      if (any(stretch < exp(strain)))
+        rate.add_isotropic((log(stretch) - strain) * Lanes(1 / (3 * dt)));
   }
   StrainStep<Lanes, n> step;
   step.dt = dt;
@@ -48,7 +59,6 @@ VADOSE_INLINE void update_solid_batch(State<M>& state, std::size_t b,
   Lanes numbers[state_size + 1];
   if constexpr (state_size > 0)
     for (int i = 0; i < state_size; ++i) numbers[i] = points.load(field::law_state, b, i);
-  const auto& soil = state.soils[static_cast<std::size_t>(points.group(b))];
   if (law::apply(soil.law, step, stress, numbers) != Status::ok) {
     sums.failed = true;
     report_trouble(state, points, b, Lanes(0.0) < Lanes(1.0), "admissible stress", "solid",
@@ -58,12 +68,9 @@ VADOSE_INLINE void update_solid_batch(State<M>& state, std::size_t b,
   if constexpr (state_size > 0)
     for (int i = 0; i < state_size; ++i) points.store(field::law_state, b, i, numbers[i]);
 
-  const Lanes grains = points.load(field::mass, b) * Lanes(1 / soil.material.solid_density);
   Lanes volume = points.load(field::volume, b);
   if constexpr (has_liquid<M>)
-    volume *=
-        volume_stretch(state, cells, entries, Lanes(1.0) - grains / max(volume, Lanes(1e-300)),
-                       Lanes(dt) * volume_rate);
+    volume *= stretch;
   else
     volume *= exp(Lanes(dt) * volume_rate);
   points.store(field::volume, b, volume);

@@ -14,3 +14,4 @@
 #include <vadose/policy/law/one_of.hpp>
 #include <vadose/policy/law/rigid.hpp>
 #include <vadose/policy/law/umat.hpp>
+#include <vadose/policy/law/with_opening.hpp>

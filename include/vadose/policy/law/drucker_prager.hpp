@@ -59,6 +59,7 @@ template <class T>
 struct MeanShear {
   T mean{};
   T shear{};
+  T cut_off{};  ///< what the cut-off took from the mean stress of the trial [Pa]
 };
 
 /// Closed-form return in the plane of mean stress and sqrt(J2): cone, then cut-off. The apex is
@@ -73,8 +74,9 @@ VADOSE_INLINE MeanShear<T> return_to_cone(const MeanShear<T>& trial, const ConeN
   const T mean = trial.mean - T(bulk_modulus) * cone.dilation * multiplier;
   const T shear = trial.shear - T(shear_modulus) * multiplier;
   const T shear_limit = max(cone.intercept - cone.slope * cone.mean_limit, zero);
-  return {min(mean, cone.mean_limit),
-          select(mean > cone.mean_limit, min(trial.shear, shear_limit), shear)};
+  const auto is_cut = mean > cone.mean_limit;
+  return {min(mean, cone.mean_limit), select(is_cut, min(trial.shear, shear_limit), shear),
+          select(is_cut, trial.mean - cone.mean_limit, zero)};
 }
 
 }  // namespace detail
@@ -170,9 +172,17 @@ class DruckerPrager::Prepared {
   template <class T, int N>
   VADOSE_INLINE Status update(const StrainStep<T, N>& step, SymTensor<T, N>& stress,
                               State<T>& state) const noexcept {
+    T opening;
+    return update(step, stress, state, opening);
+  }
+
+  /// The same; opening: volume strain beyond what the cut-off lets the soil carry [-], else 0.
+  template <class T, int N>
+  VADOSE_INLINE Status update(const StrainStep<T, N>& step, SymTensor<T, N>& stress,
+                              State<T>& state, T& opening) const noexcept {
     detail::add_elastic_stress(step.increment, bulk_modulus_, shear_modulus_, stress);
     const SymTensor<T, N> deviator = stress.deviator();
-    const MeanShear<T> trial{stress.mean(), sqrt(T(0.5) * contract(deviator, deviator))};
+    const MeanShear<T> trial{stress.mean(), sqrt(T(0.5) * contract(deviator, deviator)), T(0.0)};
     MeanShear<T> end;
     Status status = Status::ok;
     if (mobilised_)
@@ -183,6 +193,7 @@ class DruckerPrager::Prepared {
     const T part = shed / max(trial.shear, T(std::numeric_limits<Real>::min()));
     stress -= part * deviator;
     stress.add_isotropic(end.mean - trial.mean);
+    opening = T(1 / bulk_modulus_) * end.cut_off;
     state.plastic_shear_strain += T(measure_ / shear_modulus_) * shed;
     return status;
   }

@@ -119,6 +119,13 @@ concept RigidLaw = requires {
   requires L::rigid;
 };
 
+/// L knows how far its soil has been pulled apart (`static constexpr bool remembers_opening = true`): its
+/// volume strain must be that of the volume.
+template <class L>
+concept RemembersOpening = requires {
+  requires L::remembers_opening;
+};
+
 }  // namespace vadose::law
 
 namespace vadose {

@@ -175,15 +175,24 @@ class MohrCoulomb::Prepared {
   template <class T, int N>
   VADOSE_INLINE Status update(const StrainStep<T, N>& step, SymTensor<T, N>& stress,
                               State<T>& state) const noexcept {
+    T opening;
+    return update(step, stress, state, opening);
+  }
+
+  /// The same; opening: volume strain beyond what the cut-off lets the soil carry [-], else 0.
+  template <class T, int N>
+  VADOSE_INLINE Status update(const StrainStep<T, N>& step, SymTensor<T, N>& stress,
+                              State<T>& state, T& opening) const noexcept {
     detail::add_elastic_stress(step.increment, bulk_modulus_, shear_modulus_, stress);
-    if (any(may_yield(stress))) return_principal(stress, state);
+    opening = T(0.0);
+    if (any(may_yield(stress))) return_principal(stress, state, opening);
     return Status::ok;
   }
 
  private:
   /// Return in principal stresses; out of line, as most batches never come here.
   template <class T, int N>
-  void return_principal(SymTensor<T, N>& stress, State<T>& state) const noexcept {
+  void return_principal(SymTensor<T, N>& stress, State<T>& state, T& opening) const noexcept {
     const detail::PrincipalStress<T, N> trial(stress);
     T s[3] = {trial[0], trial[1], trial[2]};
     detail::Exchange<T> upper, lower, last;
@@ -191,7 +200,7 @@ class MohrCoulomb::Prepared {
     lower.sort(s[1], s[2]);
     last.sort(s[0], s[1]);
     T change[3] = {s[0], s[1], s[2]};
-    return_ordered(s);
+    opening = T(1 / bulk_modulus_) * return_ordered(s);
     for (int i = 0; i < 3; ++i) change[i] = s[i] - change[i];
     state.plastic_shear_strain += plastic_shear(change);
     last.undo(change[0], change[1]);
@@ -211,17 +220,18 @@ class MohrCoulomb::Prepared {
   }
 
   /// Return of ordered principal stresses; where the mean stress then exceeds the cut-off, return
-  /// of the trial at the cut-off instead.
+  /// of the trial at the cut-off instead. Returns what the cut-off took from the mean stress [Pa].
   template <class T>
-  VADOSE_INLINE void return_ordered(T (&s)[3]) const noexcept {
+  VADOSE_INLINE T return_ordered(T (&s)[3]) const noexcept {
     const T third(1.0 / 3.0), limit(mean_limit_);
     const T shift = limit - (s[0] + s[1] + s[2]) * third;
     T cut[3] = {s[0] + shift, s[1] + shift, s[2] + shift};
     pyramid_.move(1 + sin_phi_, 1 - sin_phi_, strength_, s);
     const auto over = (s[0] + s[1] + s[2]) * third > limit;
-    if (!any(over)) return;
+    if (!any(over)) return T(0.0);
     at_cut_off_.move(1 + sin_phi_, 1 - sin_phi_, strength_, cut);
     for (int i = 0; i < 3; ++i) s[i] = select(over, cut[i], s[i]);
+    return select(over, -shift, T(0.0));
   }
 
   /// sqrt(2 de:de) of the deviatoric plastic strain de = -dev(change) / (2 G).

@@ -54,6 +54,9 @@ class OneOf {
   using First = std::variant_alternative_t<0, std::variant<Laws...>>;
 
  public:
+  /// Any of them takes its openings back.
+  static constexpr bool remembers_opening = (RemembersOpening<Laws> || ...);
+
   /// Numbers of the largest state.
   static constexpr int numbers = std::max({state_size<Laws>...});
 
