@@ -2,11 +2,21 @@
 #pragma once
 
 #include <array>
+#include <concepts>
 #include <cstddef>
 
 #include <vadose/policy/law/law_concept.hpp>
 
 namespace vadose::law {
+
+/// Law L has a cut-off and says what it takes: its `prepared()`, or L itself, offers
+/// `update(step, stress, state, opening)`, where opening becomes the volume strain beyond what the cut-off
+/// lets the soil carry [-], 0 where it does not act.
+template <class L>
+concept HasCutOff = HasState<L> && requires(const PreparedOf<L>& law, SymTensor<Real, 3>& stress,
+                                            StateOf<L, Real>& state, Real& opening) {
+  { law.update(StrainStep<Real, 3>{}, stress, state, opening) } -> std::same_as<Status>;
+};
 
 /// A law with a cut-off (DruckerPrager, MohrCoulomb) that remembers how far soil has been pulled apart
 /// there, and carries no pressure until its grains are back where they parted. Without it, soil that is
@@ -17,6 +27,10 @@ namespace vadose::law {
 /// Its strain follows the volume of the point, also where dispersed grains no longer do.
 template <class Base>
 struct WithOpening : Base {
+  static_assert(HasCutOff<Base>,
+                "vadose: law::WithOpening needs a law with a cut-off: update(step, stress, state, "
+                "opening) of it or its prepared(), as law::DruckerPrager has it");
+
   static constexpr bool remembers_opening = true;  ///< asks for strains that are those of the volume
 
   /// State of the law, and the opening.
@@ -43,7 +57,7 @@ struct WithOpening : Base {
     using State = WithOpening::State<T>;
 
     /// Derives the numbers.
-    explicit Prepared(const Base& law) noexcept : law_(law.prepared()) {}
+    explicit Prepared(const Base& law) noexcept : law_(vadose::law::prepared(law)) {}
 
     /// Stress at the end of a step: of the law, as if the opening belonged to the strain of this step.
     template <class T, int N>
