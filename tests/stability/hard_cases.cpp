@@ -303,8 +303,8 @@ TEST_CASE("sand flies apart and back: grains that do not touch do not push") {
   const Return forgetful = flown_apart_and_back<Sand>(), dry = flown_apart_and_back<Remembering>(),
                moist = flown_apart_and_back<Moist>();
   for (const auto& [name, r] : {std::pair{"forgotten", forgetful}, {"dry", dry}, {"moist", moist}})
-    MESSAGE(std::string(name), ": largest pressure ", r.pressure, " Pa, porosity at most ", r.widest,
-            ", off at the end by ", r.porosity);
+    MESSAGE(std::string(name), ": largest pressure ", r.pressure, " Pa, porosity at most ",
+            r.widest, ", off at the end by ", r.porosity);
   CHECK(forgetful.pressure > 1e5);
   for (const Return& r : {dry, moist}) {
     CHECK(r.pressure < 1e3);

@@ -31,7 +31,8 @@ struct WithOpening : Base {
                 "vadose: law::WithOpening needs a law with a cut-off: update(step, stress, state, "
                 "opening) of it or its prepared(), as law::DruckerPrager has it");
 
-  static constexpr bool remembers_opening = true;  ///< asks for strains that are those of the volume
+  static constexpr bool remembers_opening =
+      true;  ///< asks for strains that are those of the volume
 
   /// State of the law, and the opening.
   template <class T>
