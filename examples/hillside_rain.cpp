@@ -23,7 +23,7 @@ namespace vd = vadose;
 
 // What the scene models.
 struct Hillside : vd::UnsaturatedModel<vd::ThreeDimensional> {
-  using Skeleton = vd::law::WithOpening<vd::law::DruckerPrager>;
+  using Skeleton = vd::law::DruckerPrager;
 };
 
 namespace {
@@ -68,13 +68,13 @@ vd::Material<Hillside> silty_sand(const Choices& c) {
           .solid_density = solid_density,
           .porosity = porosity,
           .lambda = 0.89,
-          .skeleton = {{.elastic = {.young_modulus = 10e6, .poisson_ratio = 0.33},  // [Pa], [-]
-                        .cohesion = 0,
-                        .friction_angle = vd::degrees(31.8),
-                        .dilation_angle = vd::degrees(-5.0),
-                        .tensile_strength = 0,
-                        .cone = c.cone,
-                        .mobilisation = {.peak_shear_strain = 0.01, .critical_shear_strain = 0.2}}},
+          .skeleton = {.elastic = {.young_modulus = 10e6, .poisson_ratio = 0.33},  // [Pa], [-]
+                       .cohesion = 0,
+                       .friction_angle = vd::degrees(31.8),
+                       .dilation_angle = vd::degrees(-5.0),
+                       .tensile_strength = 0,
+                       .cone = c.cone,
+                       .mobilisation = {.peak_shear_strain = 0.01, .critical_shear_strain = 0.2}},
           .retention = {.residual_saturation = 0, .a = 1.2},
           .conductivity = {.saturated_conductivity = c.conductivity}};
 }

@@ -32,7 +32,7 @@ namespace vd = vadose;
 
 // What the scene models. What is not named here costs neither memory nor time.
 struct SandSlope : vd::UnsaturatedModel<vd::PlaneStrain> {
-  using Skeleton = vd::law::WithOpening<vd::law::DruckerPrager>;
+  using Skeleton = vd::law::DruckerPrager;
 };
 
 namespace {
@@ -72,12 +72,12 @@ vd::Material<SandSlope> silty_sand(const Choices& c) {
           .solid_density = 2670,  // [kg/m3]
           .porosity = 0.48,
           .lambda = 0.89,
-          .skeleton = {{.elastic = {.young_modulus = 10e6, .poisson_ratio = 0.33},  // [Pa], [-]
-                        .cohesion = 0,
-                        .friction_angle = vd::degrees(31.8),
-                        .dilation_angle = vd::degrees(-5.0),  // at the peak; 0 at critical state
-                        .cone = c.cone,
-                        .mobilisation = {.peak_shear_strain = 0.01, .critical_shear_strain = 0.2}}},
+          .skeleton = {.elastic = {.young_modulus = 10e6, .poisson_ratio = 0.33},  // [Pa], [-]
+                       .cohesion = 0,
+                       .friction_angle = vd::degrees(31.8),
+                       .dilation_angle = vd::degrees(-5.0),  // at the peak; 0 at critical state
+                       .cone = c.cone,
+                       .mobilisation = {.peak_shear_strain = 0.01, .critical_shear_strain = 0.2}},
           .retention = {.residual_saturation = 0,
                         .a = 1.2,  // [1/m]
                         .porosity_dependent = !c.frozen_porosity},

@@ -22,7 +22,7 @@
 namespace vd = vadose;
 
 struct Storm : vd::UnsaturatedModel<vd::PlaneStrain> {
-  using Skeleton = vd::law::WithOpening<vd::law::DruckerPrager>;
+  using Skeleton = vd::law::DruckerPrager;
 };
 using Solver = vd::Solver<Storm, vd::scheme::SemiImplicit>;
 
@@ -63,13 +63,13 @@ Solver start(const Choices& c) {
        .solid_density = solid_density,
        .porosity = porosity,
        .lambda = 0.6,
-       .skeleton = {{.elastic = {.young_modulus = 10e6, .poisson_ratio = 0.33},
-                     .cohesion = 0,
-                     .friction_angle = vd::degrees(30),
-                     .dilation_angle = 0,
-                     .tensile_strength = 0,
-                     .cone = c.cone,
-                     .mobilisation = {.peak_shear_strain = 0.01, .critical_shear_strain = 0.2}}},
+       .skeleton = {.elastic = {.young_modulus = 10e6, .poisson_ratio = 0.33},
+                    .cohesion = 0,
+                    .friction_angle = vd::degrees(30),
+                    .dilation_angle = 0,
+                    .tensile_strength = 0,
+                    .cone = c.cone,
+                    .mobilisation = {.peak_shear_strain = 0.01, .critical_shear_strain = 0.2}},
        .retention = {.a = 1.0},
        .conductivity = {.saturated_conductivity = 5e-6}},
       {.points_per_cell = 4, .suction = 15e3, .initial_stress = vd::InitialStress::geostatic});
