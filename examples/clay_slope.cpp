@@ -7,7 +7,7 @@
 //
 // What the paper does not say, and what is done here:
 // - The box: a foundation of 5 m, a crest of 10 m, 15 m before the toe; the slope is 11 m long (1:1.57). The
-//   slide comes to the wall after 15 s: --foreland 45 gives it room.
+//   slide comes 11 m beyond the toe; what creeps on after that wants --foreland 45.
 // - The start: suction of 500 kPa at the surface, below it that of water at rest under the surface.
 //   With k_r = 1e-7 it does not move in the time of the runs.
 // - k_sat = 5 m/s, as printed, wets 2 m in 0.08 s by Richards' equation; the 5 s of Fig. 17 need
