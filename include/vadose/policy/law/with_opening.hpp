@@ -75,13 +75,22 @@ struct WithOpening : Base {
   /// See Prepared.
   Prepared prepared() const noexcept { return Prepared(*this); }
 
+  /// What a new point starts with: that of the law, closed.
+  State<Real> initial_state() const noexcept {
+    const Base& law = *this;
+    return {load_state<Base, Real>(vadose::law::initial_state(law).data()), 0};
+  }
+
   /// Oedometric modulus [Pa], that of the law.
   Real p_wave_modulus(const State<Real>& state) const noexcept {
     return Base::p_wave_modulus(state.base);
   }
   /// Shear modulus [Pa], that of the law.
   Real shear_modulus(const State<Real>& state) const noexcept {
-    return Base::shear_modulus(state.base);
+    const Base& law = *this;
+    std::array<Real, static_cast<std::size_t>(state_size<Base>) + 1> numbers{};
+    store_state<Base, Real>(state.base, numbers.data());
+    return vadose::law::shear_modulus(law, numbers.data());
   }
 
   /// Stress at the end of a step; see the class.
