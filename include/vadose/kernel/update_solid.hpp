@@ -43,11 +43,12 @@ VADOSE_INLINE void update_solid_batch(State<M>& state, std::size_t b,
   }
   [[maybe_unused]] Lanes stretch;
   if constexpr (has_liquid<M>) {
-    const Lanes n0 = Lanes(1.0) - grains / max(points.load(field::volume, b), Lanes(1e-300));
+    const Lanes porosity = Lanes(1.0) - grains / max(points.load(field::volume, b), Lanes(1e-300));
     const Lanes strain = Lanes(dt) * volume_rate;
-    stretch = volume_stretch(state, cells, entries, n0, strain);
+    stretch = volume_stretch(state, cells, entries, porosity, strain);
+    // Only where grains become dispersed the volume may fall behind.
     if constexpr (law::RemembersOpening<typename M::Skeleton>)
-      if (any(stretch < exp(strain)))
+      if (any(Lanes(dispersed_porosity) < porosity + strain) && any(stretch < exp(strain)))
         rate.add_isotropic((log(stretch) - strain) * Lanes(1 / (3 * dt)));
   }
   StrainStep<Lanes, n> step;
