@@ -4,6 +4,7 @@
 // Models that many tests use. A solver takes seconds to compile, so those below are compiled once
 // for all test programs (models/*.cpp) and every test sees these declarations first.
 
+#include <vadose/solver/scheme/semi_implicit.hpp>
 #include <vadose/solver/solver.hpp>
 
 #include "seepage.hpp"
@@ -17,6 +18,7 @@ extern template class Solver<SaturatedModel<Uniaxial>>;
 extern template class Solver<SaturatedModel<PlaneStrain>>;
 extern template class Solver<UnsaturatedModel<Uniaxial>>;
 extern template class Solver<UnsaturatedModel<PlaneStrain>>;
+extern template class Solver<UnsaturatedModel<Uniaxial>, scheme::SemiImplicit>;
 extern template class Solver<vadose_test::Seepage<Uniaxial>>;
 extern template class Solver<vadose_test::Seepage<PlaneStrain>>;
 extern template class Solver<vadose_test::Slope>;
