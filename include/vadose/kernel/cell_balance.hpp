@@ -50,30 +50,28 @@ SwitchedFlux switched_flux(const State<M>& state, const Cell<State<M>::dim>& soi
 template <class M>
 void find_implicit_fluxes(State<M>& state) {
   constexpr int dim = State<M>::dim;
-  for_cells(
-      state.grid, state.options.threads,
-      [&](std::int32_t e, const Index<dim>& local, int slot, int) {
-        const CellView<M> view(state, local, slot);
-        const FaceHeads<M> heads = find_face_heads(state, view);
-        for (int d = 0; d < dim; ++d) {
-          FaceFlux& face =
-              state.nodes.face[static_cast<std::size_t>(e) * dim + static_cast<std::size_t>(d)];
-          if (switches(face)) {
-            const Real in = switched_flux(state, soil_cell(view, d, face), d, face).value;
-            face.flux = face.soil_below ? -in : in;
-          } else if (face.kind == FaceKind::closed || face.is_shut()) {
-            face.flux = 0;
-          } else if (face.kind == FaceKind::surface) {
-            const SurfaceFlux flux = surface_flux(state, view, d, face);
-            face.flux = face.area * flux.value;
-            state.system
-                .surface_slope[static_cast<std::size_t>(e) * dim + static_cast<std::size_t>(d)] = {
-                flux.head_slope, flux.grain_slope};
-          } else {
-            face.flux = face.area * nodal_flux(state, view, d, face, heads);
-          }
-        }
-      });
+  for_cells(state.grid, state.options.threads,
+            [&](std::int32_t e, const Index<dim>& local, int slot, int) {
+              const CellView<M> view(state, local, slot);
+              const FaceHeads<M> heads = find_face_heads(state, view);
+              for (int d = 0; d < dim; ++d) {
+                const std::size_t f =
+                    static_cast<std::size_t>(e) * dim + static_cast<std::size_t>(d);
+                FaceFlux& face = state.nodes.face[f];
+                if (switches(face)) {
+                  const Real in = switched_flux(state, soil_cell(view, d, face), d, face).value;
+                  face.flux = face.soil_below ? -in : in;
+                } else if (face.kind == FaceKind::closed || face.is_shut()) {
+                  face.flux = 0;
+                } else if (face.kind == FaceKind::surface) {
+                  const SurfaceFlux flux = surface_flux(state, view, d, face);
+                  face.flux = face.area * flux.value;
+                  state.system.surface_flux[f] = flux;
+                } else {
+                  face.flux = face.area * nodal_flux(state, view, d, face, heads);
+                }
+              }
+            });
 }
 
 /// Clears content and storage of all cells.

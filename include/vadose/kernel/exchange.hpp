@@ -91,13 +91,6 @@ std::int32_t flux_node(const State<M>& state, const CellView<M>& view, int axis,
   return state.grid.entry(node);
 }
 
-/// A flux per area through the ground or a wall [m/s] and its derivatives.
-struct SurfaceFlux {
-  Real value = 0;
-  Real head_slope = 0;   ///< to the head gradient [m/s per Pa/m]
-  Real grain_slope = 0;  ///< to the mean velocity of the grains at the face [-]
-};
-
 /// Flux per area through the ground or a wall: drag and inertia of the water at the face itself, which
 /// goes on with the velocity of its nodes before the step: q [rho / (n S dt) + gamma / k] =
 /// rho (v^l_old - v^s) / dt - H. The new velocities of the nodes answer to all the faces around them; on a

@@ -154,7 +154,7 @@ bool solve_pressures(State<M>& state) {
   update_pattern(state);
   system.blocks.resize(state.grid.size());
   system.start_gradient.resize(state.nodes.face.size());
-  system.surface_slope.resize(state.nodes.face.size());
+  system.surface_flux.resize(state.nodes.face.size());
   for (std::size_t i = 0; i < state.nodes.face.size(); ++i)
     system.start_gradient[i] = state.nodes.face[i].head_gradient;
   Real change = 1e300;

@@ -145,8 +145,8 @@ struct NodeAssembly {
   }
 
   /// How a face of the ground or a wall answers, by the last trial.
-  const SurfaceSlope& slopes_of(int axis, int k) const {
-    return state.system.surface_slope[faces.face[axis][k]];
+  const SurfaceFlux& surface_flux_of(int axis, int k) const {
+    return state.system.surface_flux[faces.face[axis][k]];
   }
 
   /// Flux through faces by the velocities of the node.
@@ -163,7 +163,7 @@ struct NodeAssembly {
           continue;
         }
         if (face.kind == FaceKind::surface) {
-          add_flux(d, k, column, area * slopes_of(d, k).grain * solid[d]);
+          add_flux(d, k, column, area * surface_flux_of(d, k).grain_slope * solid[d]);
           continue;
         }
         add_flux(d, k, column,
@@ -182,7 +182,7 @@ struct NodeAssembly {
       const bool surface = face.kind == FaceKind::surface;
       const Real mobility =
           face.area / (corners / 2) *
-          (surface ? -slopes_of(axis, k).head
+          (surface ? -surface_flux_of(axis, k).head_slope
                    : face_mobility(state, face, soil_of(axis, k), checkerboard_inertia));
       for (int j = 0; j < count; ++j) {
         const FaceFlux& other = state.nodes.face[faces.face[axis][j]];

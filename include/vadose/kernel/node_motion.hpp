@@ -106,6 +106,17 @@ void find_prescribed(const State<M>& state, std::int32_t entry, std::uint16_t fl
     if (s.prescribed[d]) velocity[d] = state.factor_values[s.factor] * s.velocity[d];
 }
 
+/// Coulomb friction: the part [0, 1] that is left of what lies along a wall of normal `axis` (a velocity or an
+/// impulse) where `into` > 0 presses on it.
+template <int Dim>
+Real left_by_friction(Real friction, int axis, Real into, const Real (&vector)[Dim]) noexcept {
+  Real along = 0;
+  for (int d = 0; d < Dim; ++d)
+    if (d != axis) along += vector[d] * vector[d];
+  along = std::sqrt(along);
+  return along > 0 ? max(0.0, 1 - friction * into / along) : 0;
+}
+
 /// Motion of a node prescribed by the user, and friction on walls.
 template <class M>
 void apply_special(const State<M>& state, std::int32_t entry, NodeMotion<State<M>::dim>& node) {
@@ -118,14 +129,8 @@ void apply_special(const State<M>& state, std::int32_t entry, NodeMotion<State<M
   const Real outward = s.friction_side == 0 ? -1 : 1;
   const Real into = outward * node.solid[n];
   if (into <= 0) return;  // leaves the wall: no contact
-  node.solid[n] = 0;
-  Real speed = 0;
-  for (int d = 0; d < dim; ++d)
-    if (d != n) speed += node.solid[d] * node.solid[d];
-  speed = std::sqrt(speed);
-  const Real keep = speed > 0 ? max(0.0, 1 - s.friction * into / speed) : 0;
-  for (int d = 0; d < dim; ++d)
-    if (d != n) node.solid[d] *= keep;
+  const Real keep = left_by_friction(s.friction, n, into, node.solid);
+  for (int d = 0; d < dim; ++d) node.solid[d] *= d == n ? 0 : keep;
 }
 
 /// Drag per velocity of a node along an axis for a law linear in the relative velocity, of a volume of liquid

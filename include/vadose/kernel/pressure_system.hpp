@@ -80,10 +80,11 @@ struct SolveReport {
   Real inertia_share = 0;
 };
 
-/// Derivatives of the flux per area at a face of the ground or of a wall.
-struct SurfaceSlope {
-  Real head = 0;   ///< to its head gradient [m/s per Pa/m]
-  Real grain = 0;  ///< to the mean velocity of the grains there [-]
+/// A flux per area through the ground or a wall [m/s] and its derivatives.
+struct SurfaceFlux {
+  Real value = 0;
+  Real head_slope = 0;   ///< to the head gradient [m/s per Pa/m]
+  Real grain_slope = 0;  ///< to the mean velocity of the grains at the face [-]
 };
 
 /// Everything an implicit solution keeps. Only next_dt, next_limit and inertia_share outlive the step.
@@ -105,7 +106,7 @@ struct PressureSystem {
   std::vector<std::int32_t> row_of;                 ///< unknown of a cell that owns one, else -1
   std::vector<std::int32_t> last_row_of, last_dof;  ///< that the pattern was made for
   std::vector<Real> start_gradient;                 ///< of the faces before the step [Pa/m]
-  std::vector<SurfaceSlope> surface_slope;          ///< of faces of the ground and of walls
+  std::vector<SurfaceFlux> surface_flux;            ///< of faces of the ground and of walls
   std::vector<NodeBlock> blocks;                    ///< per node
   std::vector<Real> residual, change, worst;
   std::vector<Real> compliance;  ///< of the soil of a cell by itself, added to the matrix [m3/Pa]

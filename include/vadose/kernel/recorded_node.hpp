@@ -75,11 +75,7 @@ void apply_friction(const SpecialNode<Dim>& wall, SkeletonNode<Dim>& node) {
   const Real into = (wall.friction_side == 0 ? -1 : 1) * node.impulse[n];
   if (into <= 0) return;
   node.held |= static_cast<std::uint8_t>(1 << n);
-  Real along = 0;
-  for (int d = 0; d < Dim; ++d)
-    if (d != n) along += node.impulse[d] * node.impulse[d];
-  along = std::sqrt(along);
-  const Real keep = along > 0 ? max(0.0, 1 - wall.friction * into / along) : 0;
+  const Real keep = left_by_friction(wall.friction, n, into, node.impulse);
   for (int d = 0; d < Dim; ++d) {
     if (d == n) continue;
     node.impulse[d] *= keep;

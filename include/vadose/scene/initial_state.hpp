@@ -253,8 +253,9 @@ class InitialState {
   /// Start values of a scene.
   explicit InitialState(const Scene<M>& scene) : scene_(&scene) {
     for (const auto& soil : scene.soils()) {
-      materials_.push_back(scene.material(soil.material));
-      uniform_.push_back(uniform_pressure(soil.options, materials_.back()));
+      const Material<M>& material = materials_.emplace_back(scene.material(soil.material));
+      const Real pressure = uniform_pressure(soil.options, material);
+      uniform_.push_back({pressure, saturation_at(pressure, material)});
     }
   }
 
@@ -265,23 +266,16 @@ class InitialState {
     if (o.liquid_pressure) return o.liquid_pressure(x);
     if (o.water_table == o.water_table)
       return hydrostatic_pressure(x, o.water_table, scene_->liquid.density, scene_->gravity);
-    return uniform_[i];
+    return uniform_[i].pressure;
   }
 
   /// Degree of saturation [-]: 0 where the soil starts dry.
   Real saturation(int soil, const Vec<dim>& x) const {
     const auto i = static_cast<std::size_t>(soil);
-    if constexpr (!has_liquid<M> || !has_skeleton<M>) {
-      return 0;
-    } else {
-      if (scene_->soils()[i].options.dry) return 0;
-      if constexpr (is_unsaturated<M>)
-        return swrc::saturation<Real>(materials_[i].retention,
-                                      std::max(Real(0), -liquid_pressure(soil, x)),
-                                      materials_[i].porosity);
-      else
-        return 1;
-    }
+    const SoilOptions<dim>& o = scene_->soils()[i].options;
+    if (!has_liquid<M> || o.dry) return 0;
+    if (!o.liquid_pressure && o.water_table != o.water_table) return uniform_[i].saturation;
+    return saturation_at(liquid_pressure(soil, x), materials_[i]);
   }
 
   /// Pressure of free water [Pa], compression +.
@@ -338,6 +332,12 @@ class InitialState {
   /// Soil (>= 0), water (-2 - index) or nothing (-1).
   using Body = int;
 
+  /// What is the same all over a soil; asked for very often where the weight above is summed.
+  struct Uniform {
+    Real pressure = 0;    ///< [Pa]
+    Real saturation = 0;  ///< [-]
+  };
+
   static Real uniform_pressure(const SoilOptions<dim>& o, const Material<M>& material) {
     if constexpr (is_unsaturated<M>) {
       if (o.suction == o.suction) return -o.suction;
@@ -345,6 +345,14 @@ class InitialState {
         return -swrc::suction(material.retention, o.saturation, material.porosity);
     }
     return 0;
+  }
+
+  static Real saturation_at(Real pressure, const Material<M>& material) {
+    if constexpr (is_unsaturated<M> && has_skeleton<M>)
+      return swrc::saturation<Real>(material.retention, std::max(Real(0), -pressure),
+                                    material.porosity);
+    else
+      return 1;
   }
 
   Real distance_to_boundary(const Vec<dim>& x, const Vec<dim>& up) const {
@@ -385,7 +393,7 @@ class InitialState {
 
   const Scene<M>* scene_;
   std::vector<Material<M>> materials_;
-  std::vector<Real> uniform_;
+  std::vector<Uniform> uniform_;  ///< of soils that start with one pressure
 };
 
 }  // namespace vadose
