@@ -130,7 +130,9 @@ void apply_special(const State<M>& state, std::int32_t entry, NodeMotion<State<M
   const Real into = outward * node.solid[n];
   if (into <= 0) return;  // leaves the wall: no contact
   const Real keep = left_by_friction(s.friction, n, into, node.solid);
-  for (int d = 0; d < dim; ++d) node.solid[d] *= d == n ? 0 : keep;
+  node.solid[n] = 0;
+  for (int d = 0; d < dim; ++d)
+    if (d != n) node.solid[d] *= keep;
 }
 
 /// Drag per velocity of a node along an axis for a law linear in the relative velocity, of a volume of liquid
