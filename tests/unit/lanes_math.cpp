@@ -91,6 +91,18 @@ TEST_CASE("lanes math: log within 2 ulp over the normal range and close to 1") {
   CHECK(worst_ulps(lane_log, exact_log, Sweep{1 - 1e-6, 1.3e-11}, 10000) <= 2.0);
 }
 
+TEST_CASE("lanes math: exp_of_small is exp, within 2 ulp on both sides of where its series ends") {
+  const auto lanes = [](const Lanes& x) { return vadose::exp_of_small(x); };
+  const auto exact = [](long double x) { return std::exp(x); };
+  CHECK(worst_ulps(lanes, exact, Random(-1e-3, 1e-3), 10000) <= 1);
+  CHECK(worst_ulps(lanes, exact, Random(-2e-3, 2e-3), 10000) <= 2);
+  CHECK(worst_ulps(lanes, exact, Random(-700, 709), 10000) <= 2);
+  CHECK(vadose::exp_of_small(vadose::Real(1e-4)) == doctest::Approx(std::exp(1e-4)).epsilon(3e-16));
+  CHECK(vadose::exp_of_small(vadose::Real(2)) == std::exp(vadose::Real(2)));
+  CHECK(vadose::exp_of_small(vadose::Real(0)) == 1);
+  CHECK(std::isnan(vadose::exp_of_small(std::nan(""))));
+}
+
 TEST_CASE("lanes math: expm1 within 2.5 ulp and log1p within 2 ulp, small arguments included") {
   CHECK(worst_ulps(lane_expm1, exact_expm1, Random(-40, 40), 10000) <= 2.5);
   CHECK(worst_ulps(lane_expm1, exact_expm1, Random(-1.1, 1.1), 10000) <= 2.5);

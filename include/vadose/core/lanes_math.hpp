@@ -219,4 +219,12 @@ using std::log;
 using std::log1p;
 using std::pow;
 
+/// e^x to round-off, quickly where all x are small, as strains of a step and p/K are: below 1e-3 the next
+/// term of the series is 1e-17.
+template <class T>
+VADOSE_INLINE T exp_of_small(const T& x) noexcept {
+  if (any(T(1e-3) < abs(x))) return exp(x);
+  return T(1.0) + x * (T(1.0) + x * (T(0.5) + x * (T(1.0 / 6) + x * T(1.0 / 24))));
+}
+
 }  // namespace vadose

@@ -31,6 +31,7 @@ VADOSE_INLINE void load_half_sizes(const Points& points, std::size_t batch,
 template <int Dim>
 struct CellFinder {
   alignas(32) int index[lane_count];
+  bool shared;  ///< all points are in the same cell
 
   VADOSE_INLINE void find(const TileFrame<Dim>& frame, const Lanes (&x)[Dim]) noexcept {
     Lanes at(0.0);
@@ -43,6 +44,7 @@ struct CellFinder {
       stride *= Block<Dim>::tile_edge;
     }
     at.store_integers(index);
+    shared = all(at == Lanes(at[0]));
   }
 };
 

@@ -77,13 +77,21 @@ VADOSE_INLINE void free_record(const State<M>& state, std::size_t b,
   for (int d = 0; d < State<M>::dim; ++d) record[lane::free_position + d] = volume * x[d];
 }
 
+/// Whether there are points of free water.
+template <class M>
+bool has_free_water(const State<M>& state) noexcept {
+  const auto& groups = state.liquid.groups();
+  return std::find(groups.begin(), groups.end(), state.free_group()) != groups.end();
+}
+
 /// Sums the water points of every cell.
 template <class M>
 void sum_water(State<M>& state) {
   constexpr int dim = State<M>::dim;
   const int threads = state.options.threads;
   clear(state.nodes.pore, threads);
-  clear(state.nodes.free, threads);
+  if (state.nodes.holds_free) clear(state.nodes.free, threads);
+  state.nodes.holds_free = has_free_water(state);
   for_blocks_adding(state.liquid, threads, [&](const BatchRange& range, int thread) {
     Tile<dim>& pore = state.tile(thread, 0);
     Tile<dim>& free = state.tile(thread, 1);
@@ -208,14 +216,12 @@ void classify_cells(State<M>& state) {
               auto& cell = nodes.cell[i];
               cell.kind = CellKind::none;
               nodes.soil[i] = 0;
-              cell.fill = 0;
               cell.raw_fill = 0;
               const CellView<M> view(state, local, slot);
               const Real soil = nodes.pore[i][lane::bulk_volume];
-              const Real free = nodes.free[i][lane::free_volume];
+              const Real free = nodes.holds_free ? nodes.free[i][lane::free_volume] : 0;
               if (!view.inside() || soil + free <= 0) return;
               cell.raw_fill = (soil + free) / view.volume();
-              cell.fill = cell.raw_fill;
               const bool is_soil = soil > 0 && (free <= 0 || soil > 0.5 * view.volume());
               cell.kind = is_soil ? CellKind::soil : CellKind::free;
               nodes.soil[i] = is_soil ? 1 : 0;

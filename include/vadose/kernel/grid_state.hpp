@@ -184,6 +184,7 @@ struct GridState {
   AlignedVector<Record> content;     ///< liquid momentum, content and storage of a cell
   AlignedVector<Record> materials;   ///< bulk volume of each material in a cell
   AlignedVector<Record> relative;    ///< n (v^l - v^s) and mean face H of a node
+  bool holds_free = false;           ///< `free` is not all zero
   std::vector<Real> limited;         ///< water the donor limiter held back, per block [kg]
   std::vector<Real> frequency2;      ///< highest frequency squared of soil, per block [1/s2]
   std::vector<Real> open_impulse;    ///< pressure force that no phase took, Dim per block [N s]

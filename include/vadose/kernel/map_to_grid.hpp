@@ -66,8 +66,19 @@ VADOSE_INLINE SymTensor<Lanes, State<M>::stress_size> load_stress(const State<M>
 template <class M>
 VADOSE_INLINE Lanes in_soil_cells(const State<M>& state, const CellFinder<State<M>::dim>& cells,
                                   const std::int32_t* entries) noexcept {
-  return lanes_of(
-      [&](int l) { return state.nodes.soil[static_cast<std::size_t>(entries[cells.index[l]])]; });
+  return values_at(state.nodes.soil, cells, entries);
+}
+
+/// Whether all cells that points of a block can be in are soil.
+template <class M>
+bool is_all_soil(const State<M>& state, const std::int32_t* entries) noexcept {
+  constexpr int dim = State<M>::dim;
+  bool all = true;
+  for_cube<dim>(-1, Block<dim>::edge + 1, [&](const Index<dim>& cell) {
+    const std::int32_t e = entries[BlockGrid<dim>::tile_index(cell)];
+    all = all && state.nodes.soil[static_cast<std::size_t>(e)] > 0;
+  });
+  return all;
 }
 
 /// Adds one batch of solid points to a tile of nodes. With MeanByCell the mean stress goes to the
@@ -77,7 +88,8 @@ VADOSE_INLINE Lanes in_soil_cells(const State<M>& state, const CellFinder<State<
 template <bool MeanByCell, class M>
 VADOSE_INLINE void map_solid_batch(const State<M>& state, std::size_t b,
                                    const TileFrame<State<M>::dim>& frame,
-                                   [[maybe_unused]] const std::int32_t* entries, Record* tile,
+                                   [[maybe_unused]] const std::int32_t* entries,
+                                   [[maybe_unused]] bool all_soil, Record* tile,
                                    [[maybe_unused]] Tile<State<M>::dim>& cell_sums) noexcept {
   constexpr int dim = State<M>::dim;
   using Shape = typename M::Shape;
@@ -94,7 +106,7 @@ VADOSE_INLINE void map_solid_batch(const State<M>& state, std::size_t b,
   if constexpr (MeanByCell) {
     CellFinder<dim> cells;
     cells.find(frame, x);
-    const Lanes by_cell = in_soil_cells(state, cells, entries);
+    const Lanes by_cell = all_soil ? Lanes(1.0) : in_soil_cells(state, cells, entries);
     const Lanes mean = by_cell * stress.mean();
     stress.add_isotropic(-mean);
     Lanes record[lane_count];
@@ -164,12 +176,13 @@ void map_solid(State<M>& state) {
     ComingRecords<dim> nodes(state.grid, range.slot, state.nodes.solid_in);
     ComingRecords<dim> sums(state.grid, range.slot,
                             MeanByCell ? state.nodes.content : state.nodes.solid_in);
+    const std::int32_t* entries = state.grid.tile(range.slot);
+    const bool all_soil = MeanByCell && is_all_soil(state, entries);
     for (std::size_t b = range.begin; b < range.end; ++b) {
       state.solid.prefetch(b + 2);
       nodes.ask_for_some();
       if constexpr (MeanByCell) sums.ask_for_some();
-      map_solid_batch<MeanByCell>(state, b, frame, state.grid.tile(range.slot), tile.record,
-                                  cell_sums);
+      map_solid_batch<MeanByCell>(state, b, frame, entries, all_soil, tile.record, cell_sums);
     }
     tile.add_to(state.grid, range.slot, state.nodes.solid_in);
     if constexpr (MeanByCell) cell_sums.add_to(state.grid, range.slot, state.nodes.content);

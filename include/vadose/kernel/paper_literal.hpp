@@ -574,6 +574,7 @@ template <class M>
 void sum_rates(State<M>& state) {
   constexpr int dim = State<M>::dim;
   clear(state.nodes.free, state.options.threads);
+  state.nodes.holds_free = true;
   for_blocks_adding(state.liquid, state.options.threads, [&](const BatchRange& range, int thread) {
     Tile<dim>& liquid = state.tile(thread, 0);
     Tile<dim>& skeleton = state.tile(thread, 1);

@@ -151,7 +151,8 @@ VADOSE_INLINE void update_half_sizes(Points& points, std::size_t b, const Lanes 
                                      Real dt, Real h) noexcept {
   if constexpr (Points::fields::template has<field::HalfSize>) {
     for (int d = 0; d < Dim; ++d) {
-      const Lanes half = points.load(field::half_size, b, d) * exp(Lanes(dt) * stretching[d]);
+      const Lanes half =
+          points.load(field::half_size, b, d) * exp_of_small(Lanes(dt) * stretching[d]);
       points.store(field::half_size, b, d, min(max(half, Lanes(1e-3 * h)), Lanes(0.5 * h)));
     }
   }

@@ -36,7 +36,7 @@ void finish_cell(const State<M>& state, Cell<State<M>::dim>& cell) noexcept {
     cell.saturation = 1;
     cell.quad_pressure = max(0.0, cell.quad_pressure);  // water does not pull on air
   } else if constexpr (is_unsaturated<M>) {
-    const Real compression = std::exp(cell.pressure / state.water.bulk_modulus);
+    const Real compression = exp_of_small(cell.pressure / state.water.bulk_modulus);
     cell.saturation = min(1.0, cell.content / (cell.pore_volume * compression));
     cell.modulus = effective_modulus(cell, compression);
   } else {
@@ -70,12 +70,19 @@ void solve_saturated(State<M>& state) {
   });
 }
 
+/// Numbers of the cells of eight points.
+template <int Dim, class Values>
+VADOSE_INLINE Lanes values_at(const Values& values, const CellFinder<Dim>& cells,
+                              const std::int32_t* entries) noexcept {
+  if (cells.shared) return Lanes(values[static_cast<std::size_t>(entries[cells.index[0]])]);
+  return lanes_of([&](int l) { return values[static_cast<std::size_t>(entries[cells.index[l]])]; });
+}
+
 /// Volume rates of the skeleton in the cells of eight points; `otherwise` where there is none.
 template <class M>
 VADOSE_INLINE Lanes cell_rates(const State<M>& state, const CellFinder<State<M>::dim>& cells,
                                const std::int32_t* entries, const Lanes& otherwise) noexcept {
-  const Lanes found = lanes_of(
-      [&](int l) { return state.nodes.rate[static_cast<std::size_t>(entries[cells.index[l]])]; });
+  const Lanes found = values_at(state.nodes.rate, cells, entries);
   return select(found == found, found, otherwise);
 }
 
@@ -105,7 +112,7 @@ template <class M>
 VADOSE_INLINE Lanes volume_stretch(const State<M>& state, const CellFinder<State<M>::dim>& cells,
                                    const std::int32_t* entries, const Lanes& porosity,
                                    const Lanes& strain) noexcept {
-  const Lanes follows = exp(strain);
+  const Lanes follows = exp_of_small(strain);
   const Lanes limit =
       max(Lanes(1.0), (Lanes(1.0) - porosity) * Lanes(1 / (1 - dispersed_porosity)));
   if (!any(limit < follows)) return follows;
@@ -150,8 +157,7 @@ template <class M>
 VADOSE_INLINE Lanes pressures_at(const State<M>& state, const CellFinder<State<M>::dim>& cells,
                                  const std::int32_t* entries,
                                  const Lanes (&x)[State<M>::dim]) noexcept {
-  Lanes p = lanes_of(
-      [&](int l) { return state.nodes.head[static_cast<std::size_t>(entries[cells.index[l]])]; });
+  Lanes p = values_at(state.nodes.head, cells, entries);
   for (int d = 0; d < State<M>::dim; ++d) p += Lanes(state.water.density * state.gravity[d]) * x[d];
   return p;
 }

@@ -26,6 +26,22 @@ VADOSE_INLINE Lanes evened_out(const Lanes& filling, const Lanes& pores,
   return select(counts, Lanes(evening) * lacks, Lanes(0.0));
 }
 
+/// The shares of the cells of eight points, by lane of their records.
+template <class M>
+VADOSE_INLINE void read_shares(const State<M>& state, const CellFinder<State<M>::dim>& cells,
+                               const std::int32_t* entries, Lanes (&share)[lane_count]) noexcept {
+  const auto of_cell = [&](int l) -> const Record& {
+    return state.nodes.content[static_cast<std::size_t>(entries[cells.index[l]])];
+  };
+  if (cells.shared) {
+    const Record& record = of_cell(0);
+    for (int i = 0; i < lane_count; ++i) share[i] = Lanes(record[i]);
+  } else {
+    for (int l = 0; l < lane_count; ++l) share[l] = Lanes::load(of_cell(l).value);
+    transpose(share);
+  }
+}
+
 /// What eight pore-water points take of the gains of their cells; exchanged water carries its
 /// momentum: what leaves a point has the velocity of the point, what comes the mean where it left.
 /// (Were the mean of a cell to leave, the rest of each point would double its departure from the mean in
@@ -38,15 +54,10 @@ VADOSE_INLINE void exchange_batch(State<M>& state, std::size_t b,
   constexpr int dim = State<M>::dim;
   auto& points = state.liquid;
   Lanes share[lane_count];
-  for (int l = 0; l < lane_count; ++l)
-    share[l] =
-        Lanes::load(state.nodes.content[static_cast<std::size_t>(entries[cells.index[l]])].value);
-  transpose(share);
+  read_shares(state, cells, entries, share);
   const Lanes mass = points.load(field::mass, b);
   const Lanes volume = points.load(field::volume, b);
-  const Lanes filling = lanes_of([&](int l) {
-    return state.nodes.filling[static_cast<std::size_t>(entries[cells.index[l]])];
-  });
+  const Lanes filling = values_at(state.nodes.filling, cells, entries);
   const Lanes pores = volume * points.load(field::porosity, b);
   const Lanes held = select(volume > Lanes(0.0), mass, Lanes(0.0));
   const Lanes by_mass = held * share[lane::by_mass];

@@ -73,7 +73,7 @@ VADOSE_INLINE void update_solid_batch(State<M>& state, std::size_t b,
   if constexpr (has_liquid<M>)
     volume *= stretch;
   else
-    volume *= exp(Lanes(dt) * volume_rate);
+    volume *= exp_of_small(Lanes(dt) * volume_rate);
   points.store(field::volume, b, volume);
   const Lanes mass = points.load(field::mass, b);
   const Lanes alive_mass = max(mass, Lanes(1e-300));

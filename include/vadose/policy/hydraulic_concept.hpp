@@ -311,7 +311,7 @@ struct WaterContent {
 template <class T, class Curve>
 WaterContent<T> water_content(const Curve& curve, T liquid_pressure, T porosity,
                               T inverse_bulk_modulus) {
-  const T compression = exp(liquid_pressure * inverse_bulk_modulus);
+  const T compression = exp_of_small(liquid_pressure * inverse_bulk_modulus);
   if constexpr (is_always_saturated<Curve>) {
     const T theta = porosity * compression;
     return {theta, theta * inverse_bulk_modulus};

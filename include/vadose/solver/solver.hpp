@@ -319,9 +319,7 @@ class Solver {
   void find_films() {
     if constexpr (has_liquid<M> && has_skeleton<M>) {
       if (state_.films) return;
-      state_.films = kernel::has_rain(state_);
-      for (std::size_t b = 0; b < state_.liquid.batches() && !state_.films; ++b)
-        state_.films = state_.liquid.group(b) == state_.free_group();
+      state_.films = kernel::has_rain(state_) || kernel::has_free_water(state_);
     }
   }
 
@@ -337,6 +335,7 @@ class Solver {
       for (auto* r : {&n.liquid_in, &n.liquid_out, &n.mixture, &n.pore, &n.free, &n.content,
                       &n.materials, &n.relative})
         fresh(*r);
+      n.holds_free = false;
       n.cell.assign(size, {});
       n.dof.assign(size, -1);
       n.face.assign(size * dim, {});
@@ -582,7 +581,8 @@ void Solver<M, Scheme>::sort() {
   if constexpr (has_liquid<M>) state_.liquid.mark_blocks(state_.grid, occupied);
   make_blocks(occupied);
   const int groups = static_cast<int>(state_.soils.size()) + 1;
-  constexpr SortBy by = is_deformable<M> && M::Shape::support == 3 ? SortBy::node : SortBy::cell;
+  // What comes from cells and goes to them is shared by points of one cell; without it only nodes count.
+  constexpr SortBy by = !has_liquid<M> && M::Shape::support == 3 ? SortBy::node : SortBy::cell;
   state_.solid.sort(state_.grid, groups, by);
   if constexpr (has_liquid<M>) state_.liquid.sort(state_.grid, groups, by);
   find_films();
