@@ -48,7 +48,7 @@ VADOSE_INLINE void update_solid_batch(State<M>& state, std::size_t b,
     stretch = volume_stretch(state, cells, entries, porosity, strain);
     // Only where grains become dispersed the volume may fall behind.
     if constexpr (law::RemembersOpening<typename M::Skeleton>)
-      if (any(Lanes(dispersed_porosity) < porosity + strain) && any(stretch < exp(strain)))
+      if (any(Lanes(dispersed_porosity) < porosity + strain) && any(stretch < exp_of_small(strain)))
         rate.add_isotropic((log(stretch) - strain) * Lanes(1 / (3 * dt)));
   }
   StrainStep<Lanes, n> step;
