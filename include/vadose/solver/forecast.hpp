@@ -103,12 +103,7 @@ class Forecast {
     return trend.power == 0 && shortest_step(copy_.state()) < 0.8 * trend.level &&
            wall > 5 * patience_;
   }
-  bool has_free_water() const {
-    const auto& state = copy_.state();
-    for (std::size_t b = 0; b < state.liquid.batches(); ++b)
-      if (state.liquid.group(b) == state.free_group()) return true;
-    return false;
-  }
+  bool has_free_water() const { return kernel::has_free_water(copy_.state()); }
 
   /// Shortest step in reach [s]: of wet soil once water has come, of cells cut by ground that may slide.
   Real shortest_in_reach() const {

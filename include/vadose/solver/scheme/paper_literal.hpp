@@ -28,12 +28,10 @@ struct PaperLiteral {
   template <class M>
   static void check(const State<M>& state) {
     for (const auto& h : state.held) check(state, h);
-    if (state.soils.size() <= 1) return;
-    for (std::size_t b = 0; b < state.liquid.batches(); ++b)
-      if (state.liquid.group(b) == state.free_group())
-        vadose::check::fail("number of soils beside free water",
-                            static_cast<Real>(state.soils.size()), "{0, 1} of the printed scheme",
-                            "-");
+    if (state.soils.size() > 1 && kernel::has_free_water(state))
+      vadose::check::fail("number of soils beside free water",
+                          static_cast<Real>(state.soils.size()), "{0, 1} of the printed scheme",
+                          "-");
   }
 
   /// Refuses a liquid condition that is no natural condition of Eq. (20), or another one than those
