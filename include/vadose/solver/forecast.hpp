@@ -9,6 +9,7 @@
 #include <cmath>
 #include <vector>
 
+#include <vadose/kernel/cells.hpp>
 #include <vadose/solver/estimate.hpp>
 #include <vadose/solver/report.hpp>
 #include <vadose/solver/spells.hpp>
