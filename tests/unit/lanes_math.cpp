@@ -103,6 +103,29 @@ TEST_CASE("lanes math: exp_of_small is exp, within 2 ulp on both sides of where 
   CHECK(std::isnan(vadose::exp_of_small(std::nan(""))));
 }
 
+TEST_CASE("lanes math: exp, expm1 and log for laws are those of any number within their range") {
+  const auto exp_in = [](const Lanes& x) { return vadose::exp_in_range(x); };
+  const auto less_one = [](const Lanes& x) { return vadose::exponentials_in_range(x).less_one; };
+  const auto log_in = [](const Lanes& x) { return vadose::log_in_range(x); };
+  CHECK(worst_ulps(exp_in, exact_exp, Random(-700, 700), 10000) <= 2);
+  CHECK(worst_ulps(exp_in, exact_exp, Random(-1, 1), 10000) <= 2);
+  for (const double range : {700.0, 40.0, 1.1, 1e-5})
+    CHECK(worst_ulps(less_one, exact_expm1, Random(-range, range), 10000) <= 2.5);
+  Random exponent(-300, 300);
+  CHECK(worst_ulps(
+            log_in, exact_log, [&] { return std::pow(10.0, exponent()); }, 10000) <= 2);
+  CHECK(worst_ulps(log_in, exact_log, Sweep{0.4, 2.0 / 80000}, 10000) <= 2);
+  CHECK(log_in(Lanes(1.0))[0] == 0);
+  CHECK(exp_in(Lanes(0.0))[0] == 1);
+  CHECK(less_one(Lanes(0.0))[0] == 0);
+  CHECK(std::isnan(exp_in(Lanes(not_a_number))[0]));
+  CHECK(std::isnan(less_one(Lanes(not_a_number))[0]));
+  CHECK(std::isnan(log_in(Lanes(not_a_number))[0]));
+  CHECK(vadose::exp_in_range(2.0) == std::exp(2.0));
+  CHECK(vadose::exponentials_in_range(2.0).less_one == std::expm1(2.0));
+  CHECK(vadose::log_in_range(2.0) == std::log(2.0));
+}
+
 TEST_CASE("lanes math: expm1 within 2.5 ulp and log1p within 2 ulp, small arguments included") {
   CHECK(worst_ulps(lane_expm1, exact_expm1, Random(-40, 40), 10000) <= 2.5);
   CHECK(worst_ulps(lane_expm1, exact_expm1, Random(-1.1, 1.1), 10000) <= 2.5);

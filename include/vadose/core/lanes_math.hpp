@@ -6,7 +6,7 @@
 /// branch, the same on every target width. The scalar twins are the standard functions, so that
 /// `template <class T>` code calls them unqualified.
 ///
-/// Largest errors (tests/unit/lanes_math.cpp): exp, log, log1p 2 ulp, expm1 2.5 ulp; pow 1e-14 relative for
+/// Largest errors (tests/unit/lanes_math.cpp): exp, log, log1p 2 ulp, expm1 2.5 ulp, also in_range; pow 1e-14 relative for
 /// |y log x| < 50 (measured below 8e-16). Subnormal results are 0 and subnormal arguments count as
 /// 0, as in kernels that run with FTZ and DAZ. NaN in, NaN out.
 
@@ -157,6 +157,23 @@ VADOSE_INLINE NativeVector exponential_less_one(NativeVector x) noexcept {
   return x == x ? bounded : x;
 }
 
+/// e^x and e^x - 1, |x| <= 700 (or NaN, which passes through).
+VADOSE_INLINE void exponentials_in_range(NativeVector x, NativeVector& value,
+                                         NativeVector& less_one) noexcept {
+  const ReducedExponential e = reduce_exponential(x, NativeVector{});
+  const NativeBits power = bits_of(e.shifted) << 52;
+  const NativeVector scale = value_of(power + 0x3ff0000000000000ull);
+  const NativeVector keep_nan = 0.0 * x;
+  value = value_of(bits_of(e.fraction + 1.0) + power) + keep_nan;
+  less_one = scale * e.fraction + (scale - 1.0) + keep_nan;
+}
+
+/// log(x), 1e-300 <= x <= 1e300 (or NaN, which passes through).
+VADOSE_INLINE NativeVector logarithm_in_range(NativeVector x) noexcept {
+  const LogarithmParts p = split_logarithm(x);
+  return p.k * ln2_high - ((p.half_square - (p.remainder + p.k * ln2_low)) - p.f) + 0.0 * x;
+}
+
 /// log(1 + x) without cancellation.
 VADOSE_INLINE NativeVector logarithm_of_one_plus(NativeVector x) noexcept {
   const NativeVector zero{};
@@ -212,7 +229,46 @@ inline Lanes log1p(const Lanes& x) noexcept {
   return r;
 }
 
+/// An exponential and what it is more than 1.
+template <class T>
+struct Exponentials {
+  T value;     ///< e^x
+  T less_one;  ///< e^x - 1
+};
+
+// For laws, which know their range: a third fewer operations, on a shorter way.
+
+/// Both for |x| <= 700, without cancellation; NaN for NaN.
+VADOSE_INLINE Exponentials<Lanes> exponentials_in_range(const Lanes& x) noexcept {
+  Exponentials<Lanes> r;
+  for (int i = 0; i < detail::native_parts; ++i)
+    detail::exponentials_in_range(x.part[i], r.value.part[i], r.less_one.part[i]);
+  return r;
+}
+/// e^x for |x| <= 700; NaN for NaN.
+VADOSE_INLINE Lanes exp_in_range(const Lanes& x) noexcept {
+  return exponentials_in_range(x).value;
+}
+/// Natural logarithm for 1e-300 <= x <= 1e300; NaN for NaN.
+VADOSE_INLINE Lanes log_in_range(const Lanes& x) noexcept {
+  Lanes r;
+  for (int i = 0; i < detail::native_parts; ++i) r.part[i] = detail::logarithm_in_range(x.part[i]);
+  return r;
+}
+
 // Scalar twins.
+/// e^x and e^x - 1.
+inline Exponentials<Real> exponentials_in_range(Real x) noexcept {
+  return {std::exp(x), std::expm1(x)};
+}
+/// e^x.
+inline Real exp_in_range(Real x) noexcept {
+  return std::exp(x);
+}
+/// Natural logarithm.
+inline Real log_in_range(Real x) noexcept {
+  return std::log(x);
+}
 using std::exp;
 using std::expm1;
 using std::log;

@@ -166,6 +166,10 @@ template <class C, class T>
 concept RelativeIn = requires(const C& law, T x) {
   { law.relative(x) } -> std::same_as<T>;
 };
+template <class C, class T>
+concept SaturatedIn = requires(const C& law, T x) {
+  { law.saturated(x) } -> std::same_as<T>;
+};
 template <class D, class T>
 concept DragIn = requires(const D& law, T x) {
   { law.coefficient(x, x, x, x) } -> std::same_as<T>;
@@ -340,6 +344,15 @@ T value(const Law& law, T effective_saturation, T porosity) {
   } else {
     return static_cast<Real>(law.conductivity(effective_saturation, porosity));
   }
+}
+
+/// Hydraulic conductivity [m/s] of saturated soil at porosity [-].
+template <class T, class Law>
+T saturated(const Law& law, T porosity) {
+  if constexpr (FactorisingConductivity<Law> && detail::SaturatedIn<Law, T>)
+    return law.saturated(porosity);
+  else
+    return value<T>(law, T(1.0), porosity);
 }
 
 /// Relative conductivity k_r [-] of a law that factorises, at effective saturation [-].

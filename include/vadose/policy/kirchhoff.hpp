@@ -49,7 +49,7 @@ class KirchhoffMean {
                 Real reference_porosity)
       : retention_(retention), conductivity_(conductivity), reference_(reference_porosity) {
     check::inside("reference_porosity", reference_porosity, 0, 1, "-");
-    saturated_reference_ = conductivity::value<Real>(conductivity_, 1, reference_);
+    saturated_reference_ = conductivity::saturated<Real>(conductivity_, reference_);
     scale_reference_ = scale<Real>(reference_);
     check::positive("saturated conductivity", saturated_reference_, "m/s");
     tabulate();
@@ -58,7 +58,7 @@ class KirchhoffMean {
   /// Mean conductivity [m/s] between two liquid pressures [Pa] at porosity [-]; k(p) where they are
   /// equal. Symmetric in the pressures.
   Real mean(Real pressure_a, Real pressure_b, Real porosity) const noexcept {
-    const Real saturated = conductivity::value<Real>(conductivity_, 1, porosity);
+    const Real saturated = conductivity::saturated<Real>(conductivity_, porosity);
     const Real wet = std::max(pressure_a, pressure_b);
     const Real dry = std::min(pressure_a, pressure_b);
     if (dry >= 0) return saturated;
@@ -75,7 +75,7 @@ class KirchhoffMean {
   Lanes mean(const Lanes& pressure_a, const Lanes& pressure_b,
              const Lanes& porosity) const noexcept {
     const Lanes zero(0.0), one(1.0);
-    const Lanes saturated = conductivity::value<Lanes>(conductivity_, one, porosity);
+    const Lanes saturated = conductivity::saturated<Lanes>(conductivity_, porosity);
     const Lanes wet = max(pressure_a, pressure_b), dry = min(pressure_a, pressure_b);
     const Lanes unit = scale<Lanes>(porosity);
     const Lanes x_wet = unit * max(-wet, zero), x_dry = unit * max(-dry, zero);
@@ -198,7 +198,7 @@ class KirchhoffMean {
     const Lanes beyond = Lanes(relative_last_) * max(x_dry - max(x_wet, last), Lanes(0.0));
     const Lanes low = min(x_wet, last), high = min(x_dry, last);
     const auto place = [&](const Lanes& x) {
-      return (log(max(x, first)) - Lanes(log_first_)) * Lanes(1 / width_);
+      return (log_in_range(max(x, first)) - Lanes(log_first_)) * Lanes(1 / width_);
     };
     const Lanes t_low = place(low), t_high = place(high);
     const LaneMask dry_side = t_low >= Lanes(split_);
@@ -225,7 +225,7 @@ class KirchhoffMean {
     const Lanes rise = Lanes::load(value[1]) - Lanes::load(value[0]);
     const Lanes a = width * Lanes::load(slope[0]) - rise;
     const Lanes b = rise - width * Lanes::load(slope[1]);
-    return exp(Lanes::load(value[0]) + f * (rise + rest * (a * rest + b * f)));
+    return exp_in_range(Lanes::load(value[0]) + f * (rise + rest * (a * rest + b * f)));
   }
 
   Real at(const Curve& curve, Real t) const noexcept {

@@ -80,10 +80,14 @@ struct Mualem {
   /// k_r without cancellation: u = S_e^(1/lambda) is small in dry soil, 1 - u near saturation.
   template <class T>
   T mualem(T se) const noexcept {
-    const T log_u = log(se) * T(1 / lambda);
-    const T u = exp(log_u);
-    const T log_rest = select(u < T(0.5), log1p(-u), log(-expm1(log_u)));
-    const T bracket = expm1(T(lambda) * log_rest);
+    const T one(1.0);
+    const T log_u = log_in_range(max(se, T(1e-300))) * T(1 / lambda);
+    const auto u = exponentials_in_range(max(log_u, T(-690.0)));
+    const auto dry = u.value < T(0.5);
+    const T rest = max(select(dry, one - u.value, -u.less_one), T(1e-300));
+    const T lost = select(dry, (one - rest) - u.value, T(0.0));  // what rounding took from it
+    const T log_rest = log_in_range(rest) + lost / rest;
+    const T bracket = exponentials_in_range(T(lambda) * log_rest).less_one;
     return sqrt(se) * bracket * bracket;
   }
 };

@@ -43,7 +43,8 @@ struct Tarantino {
   template <class T>
   T suction_scale(T porosity) const noexcept {
     const T n = porosity_dependent ? porosity : T(reference_porosity);
-    return T(a / unit_weight) * pow(n / (T(1.0) - n), (1 - lambda) / lambda);
+    return T(a / unit_weight) *
+           exp(T((1 - lambda) / lambda) * detail::limited_log<T>(n / (T(1.0) - n)));
   }
 
   /// S [-] and dS/ds [1/Pa] at suction [Pa]; negative suction counts as 0.
@@ -51,7 +52,7 @@ struct Tarantino {
   SaturationAndSlope<T> saturation_and_slope(T suction, T porosity) const noexcept {
     const T s = max(suction, T(0.0));
     // log x^N with N = 1/(1-lambda) and N b = 1/lambda: one exponential for both powers
-    const T log_power = T(1 / (1 - lambda)) * log(s * T(a / unit_weight)) +
+    const T log_power = T(1 / (1 - lambda)) * detail::limited_log<T>(s * T(a / unit_weight)) +
                         T(1 / lambda) * log_void_ratio<T>(porosity);
     const auto effective = detail::van_genuchten<T>(s, log_power, lambda);
     const T range(1 - residual_saturation);
@@ -85,7 +86,7 @@ struct Tarantino {
   template <class T>
   T log_void_ratio(T porosity) const noexcept {
     if (!porosity_dependent) return T(std::log(reference_porosity / (1 - reference_porosity)));
-    return log(porosity / (T(1.0) - porosity));
+    return detail::limited_log<T>(porosity / (T(1.0) - porosity));
   }
 };
 

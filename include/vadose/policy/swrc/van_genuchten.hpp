@@ -10,15 +10,23 @@
 namespace vadose {
 namespace detail {
 
+/// Natural logarithm, with numbers beyond 1e-300 and 1e300 counted as these.
+template <class T>
+T limited_log(const T& x) noexcept {
+  return log_in_range(min(max(x, T(1e-300)), T(1e300)));
+}
+
 /// S_e = (1 + X)^-lambda and dS_e/ds [1/Pa] with X = exp(log_power) = x^(1/(1-lambda)).
-/// At s = 0 log_power is -infinity: S_e = 1, slope 0.
+/// At s = 0 S_e = 1, slope 0.
 template <class T>
 swrc::SaturationAndSlope<T> van_genuchten(T suction, T log_power, Real lambda) noexcept {
-  const T power_of_x = exp(min(log_power, T(700.0)));
-  const T effective = exp(T(-lambda) * log(T(1.0) + power_of_x));
-  const T fraction = power_of_x / (T(1.0) + power_of_x);
-  const T slope = T(-lambda / (1 - lambda)) * fraction * effective / max(suction, T(1e-300));
-  return {effective, slope};
+  const T one(1.0), zero(0.0);
+  const T over_suction = select(suction > zero, one / max(suction, T(1e-300)), zero);
+  const T power_of_x = exp_in_range(min(max(log_power, T(-690.0)), T(690.0)));
+  const T sum = one + power_of_x;
+  const T fraction = power_of_x / sum;
+  const T effective = exp_in_range(T(-lambda) * log_in_range(sum));
+  return {effective, T(-lambda / (1 - lambda)) * over_suction * fraction * effective};
 }
 
 /// x at which S_e(x) has the given value; infinite for S_e <= 0.
@@ -62,7 +70,7 @@ struct VanGenuchten {
   template <class T>
   SaturationAndSlope<T> saturation_and_slope(T suction, T /*porosity*/) const noexcept {
     const T s = max(suction, T(0.0));
-    const T log_power = T(1 / (1 - lambda)) * log(s * T(a / unit_weight));
+    const T log_power = T(1 / (1 - lambda)) * detail::limited_log<T>(s * T(a / unit_weight));
     const auto effective = detail::van_genuchten<T>(s, log_power, lambda);
     const T range(1 - residual_saturation);
     return {T(residual_saturation) + range * effective.saturation, range * effective.slope};
