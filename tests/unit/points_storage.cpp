@@ -88,18 +88,31 @@ struct Filled {
         }
     }
     CHECK(covered == points.batches());
-    check_layers();
+    check_spans();
     check_order();
   }
-  void check_layers() const {
-    REQUIRE(points.layers().size() == points.layer_coordinates().size() + 1);
-    CHECK(points.layers().back() == points.blocks().size());
-    for (std::size_t i = 0; i < points.layer_coordinates().size(); ++i) {
-      if (i > 0) CHECK(points.layer_coordinates()[i] > points.layer_coordinates()[i - 1]);
-      for (std::size_t k = points.layers()[i]; k < points.layers()[i + 1]; ++k)
-        CHECK(grid.block(points.blocks()[k].slot)[grid.slab_axis()] ==
-              points.layer_coordinates()[i]);
+  /// Every block is in one span; spans of one colour can be worked on together.
+  void check_spans() const {
+    std::vector<int> spans_of_block(points.blocks().size(), 0);
+    for (int colour = 0; colour < points.colours; ++colour) {
+      const auto& spans = points.spans(colour);
+      for (std::size_t s = 0; s < spans.size(); ++s) {
+        REQUIRE(spans[s].begin < spans[s].end);
+        REQUIRE(spans[s].end <= points.blocks().size());
+        for (std::size_t i = spans[s].begin; i < spans[s].end; ++i) {
+          ++spans_of_block[i];
+          for (std::size_t other = 0; other < s; ++other)
+            for (std::size_t k = spans[other].begin; k < spans[other].end; ++k)
+              CHECK(!are_neighbours(points.blocks()[i].slot, points.blocks()[k].slot));
+        }
+      }
     }
+    for (const int count : spans_of_block) CHECK(count == 1);
+  }
+  bool are_neighbours(int slot, int other) const {
+    for (int d = 0; d < Dim; ++d)
+      if (std::abs(grid.block(slot)[d] - grid.block(other)[d]) > 1) return false;
+    return true;
   }
   /// Inside a group of a block the points are ordered by cell.
   void check_order() const {
@@ -219,7 +232,8 @@ void check_threads(const Index<Dim>& cells, int count, unsigned seed) {
 
 TEST_CASE("sorting keeps every value of every point, through moves, births and deaths") {
   check_life<1>({{150}}, 90, 61);
-  check_life<2>({{30, 21}}, 500, 62);
+  check_life<2>({{30, 21}}, 500, 62);    // few layers: spans are rows
+  check_life<2>({{140, 21}}, 2000, 62);  // many: spans are layers
   check_life<3>({{9, 6, 13}}, 700, 63);
 }
 
@@ -273,5 +287,6 @@ TEST_CASE("a set fills whole batches per block and group only") {
 TEST_CASE("nodal sums have the same bits for one, two and three threads") {
   check_threads<1>({{2000}}, 3000, 67);
   check_threads<2>({{50, 33}}, 3000, 68);
+  check_threads<2>({{33, 150}}, 3000, 68);
   check_threads<3>({{13, 14, 29}}, 4000, 69);
 }

@@ -70,11 +70,13 @@ template <class F>
 void parallel_for(std::size_t count, [[maybe_unused]] int threads, F&& f) {
 #ifdef _OPENMP
   if (threads > 1 && count > 1) {
+    // Threads take several tasks at once while many are left: each taking costs as much as a short task.
+    const int chunk = static_cast<int>(count / (16 * static_cast<std::size_t>(threads))) + 1;
 #pragma omp parallel num_threads(threads)
     {
       const FlushSubnormals flush;
       const int thread = omp_get_thread_num();
-#pragma omp for schedule(dynamic, 1)
+#pragma omp for schedule(dynamic, chunk)
       for (std::size_t task = 0; task < count; ++task) run_task(f, task, thread);
     }
     return;

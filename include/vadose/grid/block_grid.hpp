@@ -71,10 +71,11 @@ class BlockGrid {
     slot_of_.assign(static_cast<std::size_t>(total), -1);
   }
 
-  const Vec<Dim>& origin() const noexcept { return origin_; }  ///< lower corner [m]
-  Real cell_size() const noexcept { return cell_size_; }       ///< h [m]
-  const Index<Dim>& cells() const noexcept { return cells_; }  ///< cells per axis
-  int slab_axis() const noexcept { return slab_axis_; }        ///< axis of layers
+  const Vec<Dim>& origin() const noexcept { return origin_; }    ///< lower corner [m]
+  Real cell_size() const noexcept { return cell_size_; }         ///< h [m]
+  const Index<Dim>& cells() const noexcept { return cells_; }    ///< cells per axis
+  const Index<Dim>& blocks() const noexcept { return blocks_; }  ///< of 64 cells, per axis
+  int slab_axis() const noexcept { return slab_axis_; }          ///< axis of layers
   int slots() const noexcept { return static_cast<int>(coordinates_.size()); }  ///< existing blocks
   /// Length of an array with one entry per cell (or node) of all existing blocks, plus one block
   /// that stands for everything outside.
@@ -112,6 +113,13 @@ class BlockGrid {
     int t = 0;
     for (int d = Dim - 1; d >= 0; --d) t = t * B::edge + i[d];
     return t;
+  }
+
+  /// Cell (i, j, k) of a block at one of the block's 64 entries.
+  static constexpr Index<Dim> local_at(int entry) noexcept {
+    Index<Dim> i;
+    for (int d = 0; d < Dim; ++d, entry /= B::edge) i[d] = entry % B::edge;
+    return i;
   }
 
   /// Cell of a position along an axis, clamped into the box.

@@ -30,6 +30,12 @@ enum class SortBy : unsigned char {
   node,  ///< the node nearest to them
 };
 
+/// Consecutive entries of PointSet::blocks(), [begin, end).
+struct BlockSpan {
+  std::size_t begin = 0;  ///< first
+  std::size_t end = 0;    ///< one beyond the last
+};
+
 /// One set of points (solid or liquid). A batch holds eight points, one cache line per field
 /// component; all points of a batch lie in one block (within half a cell) and belong to one
 /// group (material, or kind of water). Unused lanes have id -1 and no mass or volume.
@@ -45,10 +51,11 @@ class PointSet {
   int group(std::size_t batch) const noexcept { return group_[batch]; }  ///< group of a batch
   /// Ranges of batches by block, in the order of layers.
   const std::vector<BatchRange>& blocks() const noexcept { return blocks_; }
-  /// First entry of blocks() of each layer; one more entry than layers.
-  const std::vector<std::size_t>& layers() const noexcept { return layers_; }
-  /// Layers that hold points, as block coordinates along the slab axis.
-  const std::vector<int>& layer_coordinates() const noexcept { return layer_coordinates_; }
+  /// Spans of blocks of one colour: no two of them have neighbouring blocks.
+  const std::vector<BlockSpan>& spans(int colour) const noexcept {
+    return spans_[static_cast<std::size_t>(colour)];
+  }
+  static constexpr int colours = 4;  ///< of spans; each block is in one of them
 
   /// The eight values of a component of a field.
   template <class Tag>
@@ -144,7 +151,7 @@ class PointSet {
     new_groups_ = std::move(stored.new_groups);
     size_ = 0;
     for_each([&](std::size_t, int) { ++size_; });
-    list_layers(grid);
+    list_spans(grid);
   }
 
   /// Marks in `occupied` (one entry per block number) the blocks that hold points.
@@ -165,7 +172,7 @@ class PointSet {
     data_.swap(sorted);
     new_values_.clear();
     new_groups_.clear();
-    list_layers(grid);
+    list_spans(grid);
   }
 
  private:
@@ -283,24 +290,31 @@ class PointSet {
       p[Fields::template offset<field::Volume>() * lane_count + l] = 0;
     }
   }
-  void list_layers(const BlockGrid<Dim>& grid) {
-    layers_.clear();
-    layer_coordinates_.clear();
+  /// Spans are layers across the slab axis; where there are few of those, the rows in them, or threads
+  /// would wait for each other.
+  void list_spans(const BlockGrid<Dim>& grid) {
+    constexpr int few = 16;
+    const int slab = grid.slab_axis(), across = slab == Dim - 1 ? Dim - 2 : Dim - 1;
+    const bool rows = Dim > 1 && grid.blocks()[slab] < few;
+    for (auto& spans : spans_) spans.clear();
+    int last_layer = -1, last_row = -1;
+    std::vector<BlockSpan>* spans = nullptr;
     for (std::size_t i = 0; i < blocks_.size(); ++i) {
-      const int layer = grid.block(blocks_[i].slot)[grid.slab_axis()];
-      if (layer_coordinates_.empty() || layer_coordinates_.back() != layer) {
-        layer_coordinates_.push_back(layer);
-        layers_.push_back(i);
+      const Index<Dim>& block = grid.block(blocks_[i].slot);
+      const int layer = block[slab], row = rows ? block[across] : 0;
+      if (layer != last_layer || row != last_row) {
+        spans = &spans_[static_cast<std::size_t>(2 * (layer & 1) + (row & 1))];
+        spans->push_back({i, i});
       }
+      spans->back().end = i + 1;
+      last_layer = layer, last_row = row;
     }
-    layers_.push_back(blocks_.size());
   }
 
   AlignedVector<double> data_;
   std::vector<std::uint8_t> group_;
   std::vector<BatchRange> blocks_;
-  std::vector<std::size_t> layers_{0};
-  std::vector<int> layer_coordinates_;
+  std::array<std::vector<BlockSpan>, colours> spans_;
   std::size_t size_ = 0;
   SortBy by_ = SortBy::cell;
   std::vector<double> new_values_;

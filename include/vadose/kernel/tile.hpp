@@ -80,16 +80,15 @@ void for_blocks(const Points& points, int threads, F&& f) {
 }
 
 /// Calls f(block range, thread) for all blocks, so that two blocks whose tiles share a node are
-/// never worked on together and always in the same order: layers of even, then of odd number.
+/// never worked on together and always in the same order: that of their colours, see PointSet::spans().
 template <class Points, class F>
 void for_blocks_adding(const Points& points, int threads, F&& f) {
-  const auto& coordinates = points.layer_coordinates();
-  for (int parity = 0; parity < 2; ++parity)
-    parallel_for(coordinates.size(), threads, [&](std::size_t layer, int thread) {
-      if ((coordinates[layer] & 1) != parity) return;
-      for (std::size_t i = points.layers()[layer]; i < points.layers()[layer + 1]; ++i)
-        f(points.blocks()[i], thread);
+  for (int colour = 0; colour < Points::colours; ++colour) {
+    const auto& spans = points.spans(colour);
+    parallel_for(spans.size(), threads, [&](std::size_t s, int thread) {
+      for (std::size_t i = spans[s].begin; i < spans[s].end; ++i) f(points.blocks()[i], thread);
     });
+  }
 }
 
 /// Adds to a tile, for each of eight points, value * N + sum_e slope_part_e * dN/dx_e.
