@@ -292,4 +292,10 @@ VADOSE_INLINE bool all(bool mask) noexcept {
 template <class T>
 concept Numeric = std::is_same_v<T, Real> || std::is_same_v<T, Lanes>;
 
+/// a / b where b > 0, else `otherwise`.
+template <Numeric T>
+VADOSE_INLINE T ratio_or(const T& a, const T& b, const T& otherwise) noexcept {
+  return select(b > T(0.0), a / max(b, T(1e-300)), otherwise);
+}
+
 }  // namespace vadose

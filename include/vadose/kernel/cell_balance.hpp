@@ -167,6 +167,7 @@ Real evaluate_trial(State<M>& state) {
   if constexpr (has_skeleton<M>) find_implicit_fluxes(state);
   if constexpr (is_unsaturated<M>) {
     clear_trial_content(state);
+    find_heads(state, state.nodes.retry);
     sum_content<true>(state);
   }
   return find_residuals(state);

@@ -160,42 +160,56 @@ void find_momentum_gain(const State<M>& state, const CellView<M>& view,
   for (Real& v : cell.momentum_gain) v = after > 0 ? v / after : 0;
 }
 
-/// What points need to know of every cell before its shares: momentum gained, change of pressure.
+/// What the points in a cell read of the cell whose pressure it uses.
 template <class M>
-void find_changes(State<M>& state) {
-  constexpr int dim = State<M>::dim;
-  parallel_for(
-      static_cast<std::size_t>(state.grid.slots()), state.options.threads, [&](std::size_t s, int) {
-        const int slot = static_cast<int>(s);
-        std::int32_t e = slot * Block<dim>::cells;
-        for_cube<dim>(0, Block<dim>::edge, [&](const Index<dim>& local) {
-          const auto i = static_cast<std::size_t>(e);
-          if (state.nodes.dof[i] == e)
-            find_momentum_gain(state, CellView<M>(state, local, slot), state.nodes.cell[i]);
-          ++e;
-        });
-        predict_changes(state, s);
-      });
+void write_share(State<M>& state, std::size_t entry, const Cell<State<M>::dim>& owner) noexcept {
+  auto& nodes = state.nodes;
+  nodes.content[entry] = Record{};
+  nodes.head[entry] = find_share(state, owner, nodes.content[entry]);
+  const bool is_full = owner.kind == CellKind::soil && owner.pressure >= 0;
+  nodes.filling[entry] = is_full ? owner.water / owner.pore_volume : 0;
 }
 
-/// The shares of all cells, as points read them.
+/// Shares of the cells of slivers.
+template <class M>
+void find_sliver_shares(State<M>& state) {
+  const auto& nodes = state.nodes;
+  for_cells(state.grid, state.options.threads, nodes.near_sliver,
+            [&](std::int32_t e, const Index<State<M>::dim>&, int, int) {
+              const auto i = static_cast<std::size_t>(e);
+              const std::int32_t owner = nodes.dof[i];
+              if (owner >= 0 && owner != e)
+                write_share(state, i, nodes.cell[static_cast<std::size_t>(owner)]);
+            });
+}
+
+/// What points take of what their cells gain: momentum, change of pressure, water.
 template <class M>
 void find_shares(State<M>& state) {
-  constexpr std::size_t cells = Block<State<M>::dim>::cells;
+  constexpr int dim = State<M>::dim;
+  constexpr std::size_t cells = Block<dim>::cells;
   auto& nodes = state.nodes;
+  const auto owns = [&](std::size_t i) { return nodes.dof[i] == static_cast<std::int32_t>(i); };
   parallel_for(static_cast<std::size_t>(state.grid.slots()), state.options.threads,
                [&](std::size_t s, int) {
-                 for (std::size_t i = s * cells; i < (s + 1) * cells; ++i) {
-                   const std::int32_t owner = nodes.dof[i];
-                   nodes.content[i] = Record{};
-                   nodes.head[i] = nodes.filling[i] = 0;
-                   if (owner < 0) continue;
-                   const auto& cell = nodes.cell[static_cast<std::size_t>(owner)];
-                   nodes.head[i] = find_share(state, cell, nodes.content[i]);
-                   if (cell.kind == CellKind::soil && cell.pressure >= 0)
-                     nodes.filling[i] = cell.water / cell.pore_volume;
+                 std::size_t i = s * cells;
+                 for_cube<dim>(0, Block<dim>::edge, [&](const Index<dim>& local) {
+                   if (owns(i))
+                     find_momentum_gain(state, CellView<M>(state, local, static_cast<int>(s)),
+                                        nodes.cell[i]);
+                   ++i;
+                 });
+                 predict_changes(state, s);
+                 for (i = s * cells; i < (s + 1) * cells; ++i) {
+                   if (owns(i)) {
+                     write_share(state, i, nodes.cell[i]);
+                   } else {
+                     nodes.content[i] = Record{};
+                     nodes.head[i] = nodes.filling[i] = 0;
+                   }
                  }
                });
+  find_sliver_shares(state);
 }
 
 }  // namespace vadose::kernel

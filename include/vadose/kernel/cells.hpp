@@ -19,13 +19,26 @@ inline void clear(AlignedVector<Record>& records, int threads) {
   });
 }
 
-/// Calls f(entry, local cell coordinates, slot) for every cell of every existing block.
+/// Calls f(entry, local cell coordinates, slot, thread) for every cell of a block.
+template <int Dim, class F>
+VADOSE_INLINE void for_cells_of(int slot, int thread, F&& f) {
+  std::int32_t entry = slot * Block<Dim>::cells;
+  for_cube<Dim>(0, Block<Dim>::edge, [&](const Index<Dim>& i) { f(entry++, i, slot, thread); });
+}
+
+/// The same for every cell of every existing block.
 template <int Dim, class F>
 void for_cells(const BlockGrid<Dim>& grid, int threads, F&& f) {
   parallel_for(static_cast<std::size_t>(grid.slots()), threads, [&](std::size_t s, int thread) {
-    const int slot = static_cast<int>(s);
-    std::int32_t entry = slot * Block<Dim>::cells;
-    for_cube<Dim>(0, Block<Dim>::edge, [&](const Index<Dim>& i) { f(entry++, i, slot, thread); });
+    for_cells_of<Dim>(static_cast<int>(s), thread, f);
+  });
+}
+
+/// The same of the blocks that are marked, one mark per slot.
+template <int Dim, class F>
+void for_cells(const BlockGrid<Dim>& grid, int threads, const std::vector<char>& marks, F&& f) {
+  parallel_for(static_cast<std::size_t>(grid.slots()), threads, [&](std::size_t s, int thread) {
+    if (marks[s]) for_cells_of<Dim>(static_cast<int>(s), thread, f);
   });
 }
 
@@ -197,6 +210,14 @@ struct CellView {
     return state.cell_volume(State<M>::Kinematics::axisymmetric ? centre(0) : 1);
   }
 };
+
+/// The view of a cell or node by its entry.
+template <class M>
+CellView<M> view_of(const State<M>& state, std::int32_t entry) noexcept {
+  constexpr int dim = State<M>::dim;
+  constexpr int cells = Block<dim>::cells;
+  return CellView<M>(state, BlockGrid<dim>::local_at(entry % cells), entry / cells);
+}
 
 /// Water-bearing volume of a cell (bulk of soil, and free water) [m3].
 template <int Dim>
@@ -447,7 +468,9 @@ void gather_cell(State<M>& state, const CellView<M>& view) {
   cell.gain = 0;
   cell.solved = false;
 
+  cell.has_reference = false;  // see find_reference_pressures
   const bool full = members == 1 && !at_air;
+  if (!full || !view.has_neighbours()) nodes.has_edge[static_cast<std::size_t>(view.slot)] = 1;
   cell.fill = full ? 1 : fill;
   cell.drop = false;
   cell.quad_volume = full ? view.volume() : wet;
@@ -459,5 +482,19 @@ void gather_cell(State<M>& state, const CellView<M>& view) {
   if (cell.drop) cell.quad_volume = 0;
   place_quadrature(view, members, cell);
 }
+
+/// Up to eight soil cells of one material, on which curves are evaluated together.
+template <class M>
+struct CellBatch {
+  int count = 0;
+  std::uint8_t material = 0;
+  Cell<State<M>::dim>* cell[lane_count];
+
+  /// One number of each cell; that of the first where there are fewer.
+  template <class F>
+  Lanes numbers(F&& f) const noexcept {
+    return lanes_of([&](int l) { return f(*cell[l < count ? l : 0]); });
+  }
+};
 
 }  // namespace vadose::kernel

@@ -12,34 +12,57 @@
 
 namespace vadose::kernel {
 
+/// Divergence at the middle of a cell of what its nodes hold in lanes 0 .. Dim - 1.
+template <class M>
+Real divergence(const CellView<M>& view, const AlignedVector<Record>& records) noexcept {
+  constexpr int dim = State<M>::dim;
+  Lanes all(0.0), low(0.0);
+  for_cube<dim>(0, 2, [&](const Index<dim>& corner) {
+    int at = view.at;
+    for (int d = 0; d < dim; ++d) at += corner[d] * BlockGrid<dim>::tile_stride(d);
+    const Lanes r = Lanes::load(records[static_cast<std::size_t>(view.tile[at])].value);
+    all += r;
+    low += lower_faces_at(corner) * r;
+  });
+  Real rise = 0;
+  for (int d = 0; d < dim; ++d) rise += all[d] - 2 * low[d];
+  return rise / (power<dim - 1>(2.0) * view.state.grid.cell_size());
+}
+
+/// The same at the quadrature point of a cell.
+template <class M>
+Real divergence_at_quad(const CellView<M>& view, const AlignedVector<Record>& records) noexcept {
+  constexpr int dim = State<M>::dim;
+  const auto& c = view.state.nodes.cell[static_cast<std::size_t>(view.entry())];
+  Real xi[dim], rate = 0;
+  quad_coordinates(view.state, view.cell, c, xi);
+  for_cube<dim>(0, 2, [&](const Index<dim>& corner) {
+    int at = view.at;
+    for (int d = 0; d < dim; ++d) at += corner[d] * BlockGrid<dim>::tile_stride(d);
+    CornerFunction<dim> shape(xi, corner, 1 / view.state.grid.cell_size());
+    if constexpr (State<M>::Kinematics::axisymmetric)
+      shape.gradient[0] += shape.value / c.quad_point[0];
+    for (int d = 0; d < dim; ++d)
+      rate += shape.gradient[d] * records[static_cast<std::size_t>(view.tile[at])][d];
+  });
+  return rate;
+}
+
 /// Volume rates of a cell at its quadrature point: div v^s of the skeleton, div q of free water.
 /// The gradients are those of the pressure force, so that force and rate are adjoint. (They must
 /// be: a mismatch of 1e-3 lets undrained soil grow by 1e-3 of its highest frequency.)
 template <class M>
 void find_rates(State<M>& state, const CellView<M>& view) noexcept {
-  constexpr int dim = State<M>::dim;
   const auto& nodes = state.nodes;
   auto& c = state.nodes.cell[static_cast<std::size_t>(view.entry())];
-  Real xi[dim];
-  quad_coordinates(state, view.cell, c, xi);
-  c.rate = 0;
-  c.skeleton_rate = 0;
+  const bool in_middle = !State<M>::Kinematics::axisymmetric && !c.at_air && c.members == 1;
+  const auto rate = [&](const AlignedVector<Record>& records) {
+    return in_middle ? divergence(view, records) : divergence_at_quad(view, records);
+  };
+  c.rate = c.skeleton_rate = 0;
   if (c.drop) return;
-  Real rate = 0, skeleton_rate = 0;
-  for_cube<dim>(0, 2, [&](const Index<dim>& corner) {
-    int at = view.at;
-    for (int d = 0; d < dim; ++d) at += corner[d] * BlockGrid<dim>::tile_stride(d);
-    const auto i = static_cast<std::size_t>(view.tile[at]);
-    CornerFunction<dim> shape(xi, corner, 1 / state.grid.cell_size());
-    if constexpr (State<M>::Kinematics::axisymmetric)
-      shape.gradient[0] += shape.value / c.quad_point[0];
-    for (int d = 0; d < dim; ++d) {
-      if (c.kind == CellKind::free) rate += shape.gradient[d] * nodes.mixture[i][d];
-      if constexpr (is_deformable<M>) skeleton_rate += shape.gradient[d] * nodes.solid_out[i][d];
-    }
-  });
-  c.rate = rate;
-  c.skeleton_rate = skeleton_rate;
+  if (c.kind == CellKind::free) c.rate = rate(nodes.mixture);
+  if constexpr (is_deformable<M>) c.skeleton_rate = rate(nodes.solid_out);
 }
 
 /// The same of all cells.

@@ -11,20 +11,6 @@
 
 namespace vadose::kernel {
 
-/// Eight soil cells of one material, whose conductivities are found together.
-template <class M>
-struct CellBatch {
-  int count = 0;
-  std::uint8_t material = 0;
-  Cell<State<M>::dim>* cell[lane_count];
-
-  /// One number of each cell; that of the first where there are fewer.
-  template <class F>
-  Lanes numbers(F&& f) const noexcept {
-    return lanes_of([&](int l) { return f(*cell[l < count ? l : 0]); });
-  }
-};
-
 /// Conductivities of up to eight soil cells at their own pressure and at S = 1.
 template <class M>
 void find_conductivities(const State<M>& state, CellBatch<M>& batch) {
@@ -33,8 +19,8 @@ void find_conductivities(const State<M>& state, CellBatch<M>& batch) {
   const auto& soil = state.soils[batch.material];
   const auto& material = soil.material;
   const Lanes one(1.0), zero(0.0);
-  const Lanes saturated = conductivity::value<Lanes>(
-      material.conductivity, one, batch.numbers([](const C& c) { return c.soil_porosity; }));
+  const Lanes saturated = conductivity::saturated<Lanes>(
+      material.conductivity, batch.numbers([](const C& c) { return c.soil_porosity; }));
   Lanes conductivity = saturated;
   if constexpr (is_unsaturated<M>) {
     const Lanes p = batch.numbers([](const C& c) { return c.pressure; });
@@ -425,10 +411,9 @@ template <class M>
 void find_reference_pressures(State<M>& state) {
   constexpr int dim = State<M>::dim;
   auto& nodes = state.nodes;
-  for_cells(state.grid, state.options.threads,
+  for_cells(state.grid, state.options.threads, nodes.has_edge,
             [&](std::int32_t e, const Index<dim>& local, int slot, int) {
               auto& cell = nodes.cell[static_cast<std::size_t>(e)];
-              cell.has_reference = false;
               if (nodes.dof[static_cast<std::size_t>(e)] != e || cell.kind != CellKind::soil)
                 return;
               const CellView<M> view(state, local, slot);

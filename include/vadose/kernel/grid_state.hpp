@@ -90,7 +90,6 @@ struct alignas(64) Cell {
   Real quad_pressure = 0;  ///< pressure at quad_point [Pa]
   Real soil_share = 0;     ///< bulk volume of soil / water-bearing volume [-]
   Real soil_porosity = 1;  ///< of the soil in the cell, also where free water fills most of it
-  Real mean_stress = 0;    ///< mean Bishop stress of the skeleton in the cell [Pa]
 
   Real water = 0;                ///< M_c [kg]
   Real gain = 0;                 ///< water received in the step [kg]
@@ -193,6 +192,7 @@ struct GridState {
   std::vector<char> retry;        ///< blocks whose pressures are not found yet, one per slot
   std::vector<char> sought;       ///< scratch: marks of blocks before they are widened
   std::vector<char> near_sliver;  ///< blocks that hold a sliver or lie beside one, one per slot
+  std::vector<char> has_edge;     ///< blocks with a pressure cell at air or at a wall, one per slot
   /// Pressure of the water of a cell at the origin, p_c - rho_l g . x_c, by the cell whose pressure it
   /// uses; one per cell [Pa].
   std::vector<Real> head;

@@ -150,19 +150,6 @@ VADOSE_INLINE void map_solid_batch(const State<M>& state, std::size_t b,
   }
 }
 
-/// Mean Bishop stress of every pressure cell.
-template <class M>
-void find_mean_stresses(State<M>& state) {
-  for_cells(state.grid, state.options.threads,
-            [&](std::int32_t e, const Index<State<M>::dim>& local, int slot, int) {
-              const auto i = static_cast<std::size_t>(e);
-              if (state.nodes.dof[i] != e) return;
-              const Record sums = member_sums(CellView<M>(state, local, slot), state.nodes.content);
-              const Real volume = sums[lane::skeleton_volume];
-              state.nodes.cell[i].mean_stress = volume > 0 ? sums[lane::mean_stress] / volume : 0;
-            });
-}
-
 /// Solid points to nodes: m, m v, -sum sigma V grad S, V. Without MeanByCell that is the whole
 /// stress of each point, as [Zhan] Eq. (22) has it.
 template <class M, bool MeanByCell = has_liquid<M>>
@@ -187,7 +174,6 @@ void map_solid(State<M>& state) {
     tile.add_to(state.grid, range.slot, state.nodes.solid_in);
     if constexpr (MeanByCell) cell_sums.add_to(state.grid, range.slot, state.nodes.content);
   });
-  if constexpr (MeanByCell) find_mean_stresses(state);
 }
 
 /// Moves points of slivers to the edge of the cell whose pressure they share, for their mapping:

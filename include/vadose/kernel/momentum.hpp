@@ -4,6 +4,7 @@
 /// \file
 /// Steps 5 to 7, [Zhan] 3.4 (d), (e): forces, drag, walls and new velocities of every node.
 
+#include <vadose/kernel/inner_nodes.hpp>
 #include <vadose/kernel/recorded_node.hpp>
 
 namespace vadose::kernel {
@@ -18,8 +19,9 @@ Real damping_now(const State<M>& state) noexcept {
 }
 
 /// One node: forces, drag, boundaries, new velocities. `Recorded`: for an implicit solution.
-template <bool Recorded = false, class M, class Parts>
-void advance_node(State<M>& state, const CellView<M>& view, [[maybe_unused]] const Parts& parts) {
+template <bool Recorded = false, class M>
+void advance_node(State<M>& state, const CellView<M>& view,
+                  [[maybe_unused]] const SumsAround<State<M>::dim>& around) {
   constexpr int dim = State<M>::dim;
   const auto i = static_cast<std::size_t>(view.entry());
   const std::uint16_t flags = state.nodes.node_flags[i];
@@ -34,7 +36,7 @@ void advance_node(State<M>& state, const CellView<M>& view, [[maybe_unused]] con
   NodeMotion<dim> before = node;
   Real skeleton_volume = 0;
   if constexpr (has_liquid<M>) {
-    sums = gather_node(state, view, parts);
+    sums = gather_node(state, view, around);
     if constexpr (is_deformable<M>)
       skeleton_volume = state.nodes.solid_in[i][lane::volume];
     else if constexpr (has_skeleton<M>)
@@ -42,7 +44,7 @@ void advance_node(State<M>& state, const CellView<M>& view, [[maybe_unused]] con
     porosity = sums.porosity;
     for (int d = 0; d < dim; ++d) node.solid_force[d] += sums.skeleton_force[d];
     Real open[dim] = {};
-    pressure_forces(sums, skeleton_volume, state.water.density, node, open);
+    if (sums.volume > 0) pressure_forces(sums, skeleton_volume, state.water.density, node, open);
     for (int d = 0; d < dim; ++d)
       state.nodes.open_impulse[static_cast<std::size_t>(view.slot * dim + d)] += state.dt * open[d];
   }
@@ -67,11 +69,34 @@ void advance_node(State<M>& state, const CellView<M>& view, [[maybe_unused]] con
   store_node(state, i, sums, porosity, before, node);
 }
 
-/// Stands for the cells of a model without liquid.
-struct NoParts {
-  template <class M>
-  NoParts(const State<M>&, int, int) noexcept {}
-};
+/// The nodes of a block.
+template <bool Recorded, class M>
+void advance_block(State<M>& state, int slot, [[maybe_unused]] int thread) {
+  constexpr int dim = State<M>::dim;
+  if constexpr (!has_liquid<M>) {
+    const SumsAround<dim> none;
+    for_cube<dim>(0, Block<dim>::edge, [&](const Index<dim>& local) {
+      advance_node<Recorded>(state, CellView<M>(state, local, slot), none);
+    });
+  } else {
+    constexpr bool together = is_deformable<M> && !Recorded;
+    const CellParts<M> parts(state, slot, thread);
+    const Real over_h = 1 / state.grid.cell_size();
+    SumsAround<dim> around[lane_count];
+    for (int first = 0; first < Block<dim>::cells; first += lane_count) {
+      for (int l = 0; l < lane_count; ++l) {
+        const int at = BlockGrid<dim>::tile_index(BlockGrid<dim>::local_at(first + l));
+        around[l] = SumsAround<dim>(parts, at, over_h);
+      }
+      unsigned done = 0;
+      if constexpr (together) done = advance_inner_nodes(state, slot, first, around);
+      for (int l = 0; l < lane_count; ++l)
+        if (!(done >> l & 1))
+          advance_node<Recorded>(
+              state, CellView<M>(state, BlockGrid<dim>::local_at(first + l), slot), around[l]);
+    }
+  }
+}
 
 /// All nodes.
 template <bool Recorded = false, class M>
@@ -79,14 +104,9 @@ void advance_nodes(State<M>& state) {
   constexpr int dim = State<M>::dim;
   if constexpr (has_liquid<M>)
     state.nodes.open_impulse.assign(static_cast<std::size_t>(state.grid.slots() * dim), 0);
-  using Parts = std::conditional_t<has_liquid<M>, CellParts<M>, NoParts>;
   parallel_for(static_cast<std::size_t>(state.grid.slots()), state.options.threads,
                [&](std::size_t s, int thread) {
-                 const int slot = static_cast<int>(s);
-                 const Parts parts(state, slot, thread);
-                 for_cube<dim>(0, Block<dim>::edge, [&](const Index<dim>& local) {
-                   advance_node<Recorded>(state, CellView<M>(state, local, slot), parts);
-                 });
+                 advance_block<Recorded>(state, static_cast<int>(s), thread);
                });
   if constexpr (has_liquid<M>)
     for (std::size_t i = 0; i < state.nodes.open_impulse.size(); ++i)

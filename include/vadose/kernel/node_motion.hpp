@@ -10,13 +10,13 @@
 
 namespace vadose::kernel {
 
-/// Velocities and masses of the two phases at a node.
-template <int Dim>
+/// Velocities and masses of the two phases at a node, or (Lanes) at eight.
+template <int Dim, class T = Real>
 struct NodeMotion {
-  Real solid_mass = 0, liquid_mass = 0;
-  Real solid[Dim] = {}, liquid[Dim] = {};              ///< before, then after [m/s]
-  Real solid_force[Dim] = {}, liquid_force[Dim] = {};  ///< [N]
-  Real drag[Dim] = {};                                 ///< implicit, times the step [kg]
+  T solid_mass{}, liquid_mass{};
+  T solid[Dim] = {}, liquid[Dim] = {};              ///< before, then after [m/s]
+  T solid_force[Dim] = {}, liquid_force[Dim] = {};  ///< [N]
+  T drag[Dim] = {};                                 ///< implicit, times the step [kg]
 };
 
 /// DEVIATION: [Zhan] Eq. (20) prints the point force n p V grad N, without S, which pushes (1 - n) p at
@@ -27,42 +27,46 @@ struct NodeMotion {
 /// by its mass at the node, so that water at rest stays at rest for any arrangement of points; what
 /// no skeleton is there to take of R, and what the blend takes from it, is handed back in `open`:
 /// momentum closes with its sum.
-template <int Dim>
-void pressure_forces(const NodeSums<Dim>& sums, Real skeleton_volume, Real liquid_density,
-                     NodeMotion<Dim>& node, Real (&open)[Dim]) noexcept {
-  if (!(sums.volume > 0)) return;
-  const Real phi = node.liquid_mass / (liquid_density * sums.volume);
-  const Real occupancy = min(1.0, skeleton_volume / sums.volume);
-  const Real w = min(1.0, occupancy / 0.1);
-  const Real n = sums.soil_volume > 0 ? sums.pores / sums.soil_volume : 1;
+/// The volume of `sums` has to be > 0.
+template <int Dim, class T>
+void pressure_forces(const NodeSums<Dim, T>& sums, const T& skeleton_volume, Real liquid_density,
+                     NodeMotion<Dim, T>& node, T (&open)[Dim]) noexcept {
+  const T one(1.0);
+  const T phi = node.liquid_mass / (T(liquid_density) * sums.volume);
+  const T occupancy = min(one, skeleton_volume / sums.volume);
+  const T w = min(one, occupancy * T(1 / 0.1));
+  const T n = ratio_or(sums.pores, sums.soil_volume, one);
   for (int d = 0; d < Dim; ++d) {
     node.liquid_force[d] += phi * sums.force[d];
-    const Real full = sums.soil_force[d] - phi * sums.force[d];
-    const Real fringe = occupancy * (sums.soil_force[d] - n * sums.saturation[d] * sums.force[d]);
-    const Real taken = w * full + (1 - w) * fringe;
+    const T full = sums.soil_force[d] - phi * sums.force[d];
+    const T fringe = occupancy * (sums.soil_force[d] - n * sums.saturation[d] * sums.force[d]);
+    const T taken = w * full + (one - w) * fringe;
     node.solid_force[d] += taken;
-    open[d] = node.solid_mass > 0 ? full - taken : full;
+    open[d] = select(node.solid_mass > T(0.0), full - taken, full);
   }
 }
 
 /// Local damping of the skeleton: against its velocity, by its share of the mass. Grains beyond the
 /// soil, among free water, are damped alone.
-template <int Dim>
-void damp(Real damping, bool beyond_soil, NodeMotion<Dim>& node) noexcept {
-  const Real liquid = beyond_soil ? 0 : 1;
-  const Real share = node.solid_mass / (node.solid_mass + liquid * node.liquid_mass);
+template <int Dim, class T>
+void damp(Real damping, bool beyond_soil, NodeMotion<Dim, T>& node) noexcept {
+  const T liquid(beyond_soil ? 0.0 : 1.0), zero(0.0);
+  const T share = node.solid_mass / (node.solid_mass + liquid * node.liquid_mass);
   for (int d = 0; d < Dim; ++d) {
-    const Real out_of_balance = std::fabs(node.solid_force[d] + liquid * node.liquid_force[d]);
-    const Real v = node.solid[d];
-    if (v != 0) node.solid_force[d] -= std::copysign(damping * out_of_balance * share, v);
+    const T out_of_balance = abs(node.solid_force[d] + liquid * node.liquid_force[d]);
+    const T held_back = T(damping) * out_of_balance * share;
+    const T v = node.solid[d];
+    node.solid_force[d] -= select(v > zero, held_back, select(v < zero, -held_back, zero));
   }
 }
 
 /// DEVIATION: the drag is explicit in [Zhan], which needs steps of 1.5e-7 s for 4.1 unsaturated.
 /// New velocities of both phases along one axis with implicit drag q = dt D:
 /// [a + q, -q; -q, b + q] (v_l, v_s) = (r_l, r_s). Momentum conserving, stable for any q.
-inline void solve_pair(Real a, Real b, Real q, Real r_l, Real r_s, Real& v_l, Real& v_s) noexcept {
-  const Real det = a * b + q * (a + b);
+template <class T>
+void solve_pair(const T& a, const T& b, const T& q, const T& r_l, const T& r_s, T& v_l,
+                T& v_s) noexcept {
+  const T det = a * b + q * (a + b);
   v_l = ((b + q) * r_l + q * r_s) / det;
   v_s = ((a + q) * r_s + q * r_l) / det;
 }
@@ -140,39 +144,62 @@ void apply_special(const State<M>& state, std::int32_t entry, NodeMotion<State<M
 /// the answer of the liquid, k / gamma in the drag limit, does not depend on it: with the upstream n S V in
 /// its place soil of S = 0.3 would let in a third of what enters. A quadratic part is linearised at the
 /// closed-form root (see below).
-template <int Dim>
-Real drag_coefficient(const NodeSums<Dim>& sums, Real liquid_volume, int axis) noexcept {
-  return sums.drag[axis] > 0 ? liquid_volume * sums.drag[axis] : 1e30;
+template <int Dim, class T>
+T drag_coefficient(const NodeSums<Dim, T>& sums, const T& liquid_volume, int axis) noexcept {
+  return select(sums.drag[axis] > T(0.0), liquid_volume * sums.drag[axis], T(1e30));
 }
 
 /// Factor 1 + B |w| / A by which a quadratic drag term raises the linear coefficient, with |w|
 /// after the step from the positive root of its equation (Forchheimer, closed form).
-template <class M>
-Real quadratic_drag_factor(const State<M>& state, const NodeSums<State<M>::dim>& sums,
-                           Real liquid_volume, const NodeMotion<State<M>::dim>& node,
-                           const Real (&linear)[State<M>::dim]) {
+template <class M, class T>
+T quadratic_drag_factor(const State<M>& state, const NodeSums<State<M>::dim, T>& sums,
+                        const T& liquid_volume, const NodeMotion<State<M>::dim, T>& node,
+                        const T (&linear)[State<M>::dim]) {
   constexpr int dim = State<M>::dim;
+  const T one(1.0);
   if constexpr (!QuadraticDrag<typename M::Drag>) {
-    return 1;
+    return one;
   } else {
-    Real w2 = 0, a = 0, k = 0, s = 0;
-    const Real inverse = 1 / node.liquid_mass + (node.solid_mass > 0 ? 1 / node.solid_mass : 0.0);
+    const T zero(0.0), dt(state.dt), each(1.0 / dim);
+    const auto per_solid_mass = [&](const T& x) { return ratio_or(x, node.solid_mass, zero); };
+    T w2 = zero, a = zero, k = zero, s = zero;
+    const T inverse = one / node.liquid_mass + per_solid_mass(one);
     for (int d = 0; d < dim; ++d) {
-      const Real w = node.liquid[d] - node.solid[d] +
-                     state.dt * (node.liquid_force[d] / node.liquid_mass -
-                                 (node.solid_mass > 0 ? node.solid_force[d] / node.solid_mass : 0));
+      const T w =
+          node.liquid[d] - node.solid[d] +
+          dt * (node.liquid_force[d] / node.liquid_mass - per_solid_mass(node.solid_force[d]));
       w2 += w * w;
-      a += linear[d] / dim;
-      k += sums.conductivity[d] / dim;
-      s += max(sums.saturation[d], least_saturation) / dim;
+      a += linear[d] * each;
+      k += sums.conductivity[d] * each;
+      s += max(sums.saturation[d], T(least_saturation)) * each;
     }
     const auto& material = state.soils[sums.material].material;
-    const Real b = liquid_volume * drag::quadratic<Real>(material.drag, sums.porosity, s, k,
-                                                         material.unit_weight, state.water.density);
-    const Real p = 1 + state.dt * inverse * a;
-    const Real q = state.dt * inverse * b;
-    const Real w = 2 * std::sqrt(w2) / (p + std::sqrt(p * p + 4 * q * std::sqrt(w2)));
-    return a > 0 ? 1 + b * w / a : 1;
+    const T b = liquid_volume * drag::quadratic<T>(material.drag, sums.porosity, s, k,
+                                                   T(material.unit_weight), T(state.water.density));
+    const T p = one + dt * inverse * a;
+    const T q = dt * inverse * b;
+    const T w = T(2.0) * sqrt(w2) / (p + sqrt(p * p + T(4.0) * q * sqrt(w2)));
+    return ratio_or(a + b * w, a, one);
+  }
+}
+
+/// New velocities where both phases are, nothing is prescribed, and the soil drags the liquid.
+template <class M, class T>
+void advance_free_pair(const State<M>& state, const NodeSums<State<M>::dim, T>& sums,
+                       const T& liquid_volume, NodeMotion<State<M>::dim, T>& node) {
+  constexpr int dim = State<M>::dim;
+  const T a = node.liquid_mass, b = node.solid_mass, dt(state.dt);
+  T linear[dim];
+  for (int d = 0; d < dim; ++d) linear[d] = drag_coefficient(sums, liquid_volume, d);
+  const T factor = quadratic_drag_factor(state, sums, liquid_volume, node, linear);
+  for (int d = 0; d < dim; ++d) {
+    const T r_l = a * node.liquid[d] + dt * node.liquid_force[d];
+    const T r_s = b * node.solid[d] + dt * node.solid_force[d];
+    node.drag[d] = dt * linear[d] * factor;
+    if (state.frozen)
+      node.liquid[d] = node.solid[d] = (r_l + r_s) / (a + b);
+    else
+      solve_pair(a, b, node.drag[d], r_l, r_s, node.liquid[d], node.solid[d]);
   }
 }
 
@@ -186,6 +213,12 @@ void advance_pair(const State<M>& state, const NodeSums<State<M>::dim>& sums,
   const bool has_water = node.liquid_mass > 0;
   const Real liquid_volume = node.liquid_mass / state.water.density * sums.soil_share();
   const bool drags = has_solid && liquid_volume > 0;
+  bool is_free = !is_rigid<M> && drags;
+  for (const Real velocity : prescribed) is_free = is_free && !is_finite(velocity);
+  if (is_free) {
+    advance_free_pair(state, sums, liquid_volume, node);
+    return;
+  }
   Real linear[dim] = {};
   Real factor = 1;
   if (drags) {
@@ -253,77 +286,89 @@ void mirror_at_walls(std::uint16_t flags, NodeMotion<Dim>& before) noexcept {
   }
 }
 
-/// Velocity of a phase and its change, as points read them.
-template <int Dim>
-Record velocity_record(const Real (&before)[Dim], const Real (&after)[Dim]) noexcept {
-  Record out;
+/// Velocity of a phase and its change, as points read them; `out`: a record, or those of eight nodes by
+/// lane.
+template <int Dim, class T, class Rows>
+void set_velocities(const T (&before)[Dim], const T (&after)[Dim], Rows& out) noexcept {
   for (int d = 0; d < Dim; ++d) {
     out[lane::velocity + d] = after[d];
     out[lane::increment + d] = after[d] - before[d];
   }
-  return out;
 }
 
 /// Writes the velocities of one node.
 template <class M>
 void store_velocities(State<M>& state, std::size_t i, const NodeMotion<State<M>::dim>& before,
                       const NodeMotion<State<M>::dim>& after) {
-  if constexpr (is_deformable<M>)
-    state.nodes.solid_out[i] = velocity_record(before.solid, after.solid);
-  if constexpr (has_liquid<M>)
-    state.nodes.liquid_out[i] = velocity_record(before.liquid, after.liquid);
+  Record solid, liquid;
+  set_velocities(before.solid, after.solid, solid);
+  set_velocities(before.liquid, after.liquid, liquid);
+  if constexpr (is_deformable<M>) state.nodes.solid_out[i] = solid;
+  if constexpr (has_liquid<M>) state.nodes.liquid_out[i] = liquid;
 }
 
 /// Head gradient that drives the flow through the soil at a node along an axis, per n (v^l - v^s):
 /// linear drag of its soil and the inertia of a step [Pa s/m2].
-template <class M>
-Real resistance(const State<M>& state, const NodeSums<State<M>::dim>& sums, int axis) noexcept {
-  if (!(sums.soil_volume > 0) || !(sums.conductivity[axis] > 0)) return 0;
-  return (state.water.density / state.dt + drag_coefficient(sums, sums.soil_share(), axis)) /
-         sums.porosity;
+template <class M, class T>
+T resistance(const State<M>& state, const NodeSums<State<M>::dim, T>& sums, int axis) noexcept {
+  const auto flows = (sums.soil_volume > T(0.0)) & (sums.conductivity[axis] > T(0.0));
+  const T driving = T(state.water.density / state.dt) +
+                    drag_coefficient<State<M>::dim, T>(sums, sums.soil_share(), axis);
+  return select(flows, driving / sums.porosity, T(0.0));
+}
+
+/// What cells, faces and free water read of a node: total flux and resistance, relative flux and mean head
+/// gradient; `mixture`, `relative`: a record each, or those of eight nodes by lane.
+template <class M, class T, class Rows>
+void set_fluxes(const State<M>& state, const NodeSums<State<M>::dim, T>& sums, const T& porosity,
+                const NodeMotion<State<M>::dim, T>& after, Rows& mixture, Rows& relative) noexcept {
+  for (int d = 0; d < State<M>::dim; ++d) {
+    mixture[d] = porosity * after.liquid[d] + (T(1.0) - porosity) * after.solid[d];
+    relative[d] = porosity * (after.liquid[d] - after.solid[d]);
+    relative[4 + d] = sums.head_gradient[d];
+    if constexpr (has_skeleton<M>) mixture[4 + d] = resistance<M, T>(state, sums, d);
+  }
 }
 
 /// Writes the results of one node.
 template <class M>
 void store_node(State<M>& state, std::size_t i, const NodeSums<State<M>::dim>& sums, Real porosity,
                 const NodeMotion<State<M>::dim>& before, const NodeMotion<State<M>::dim>& after) {
-  constexpr int dim = State<M>::dim;
-  auto& nodes = state.nodes;
   store_velocities(state, i, before, after);
   if constexpr (has_liquid<M>) {
-    Record flux, relative;
-    for (int d = 0; d < dim; ++d) {
-      flux[d] = porosity * after.liquid[d] + (1 - porosity) * after.solid[d];
-      relative[d] = porosity * (after.liquid[d] - after.solid[d]);
-      relative[4 + d] = sums.head_gradient[d];
-      if constexpr (has_skeleton<M>) flux[4 + d] = resistance(state, sums, d);
-    }
-    nodes.mixture[i] = flux;
-    nodes.relative[i] = relative;
+    Record mixture, relative;
+    set_fluxes(state, sums, porosity, after, mixture, relative);
+    state.nodes.mixture[i] = mixture;
+    state.nodes.relative[i] = relative;
+  }
+}
+
+/// What the solid points mapped to a node, or (rows by lane) to eight; `gravity` acts on it.
+template <int Dim, class T, class Rows>
+void load_solid(const Rows& sums, const Vec<Dim>& gravity, NodeMotion<Dim, T>& node) noexcept {
+  node.solid_mass = sums[lane::mass];
+  for (int d = 0; d < Dim; ++d) {
+    node.solid[d] = ratio_or(T(sums[lane::momentum + d]), node.solid_mass, T(0.0));
+    node.solid_force[d] = sums[lane::force + d] + node.solid_mass * T(gravity[d]);
+  }
+}
+
+/// The same of the liquid points; liquid that is not there moves with the solid.
+template <int Dim, class T, class Rows>
+void load_liquid(const Rows& sums, const Vec<Dim>& gravity, NodeMotion<Dim, T>& node) noexcept {
+  node.liquid_mass = sums[lane::mass];
+  for (int d = 0; d < Dim; ++d) {
+    node.liquid[d] = ratio_or(T(sums[lane::momentum + d]), node.liquid_mass, node.solid[d]);
+    node.liquid_force[d] = sums[lane::force + d] + node.liquid_mass * T(gravity[d]);
   }
 }
 
 /// Loads what the points mapped to a node.
 template <class M>
 NodeMotion<State<M>::dim> load_node(const State<M>& state, std::size_t i) noexcept {
-  constexpr int dim = State<M>::dim;
-  NodeMotion<dim> node;
-  if constexpr (is_deformable<M>) {
-    const Record& s = state.nodes.solid_in[i];
-    node.solid_mass = s[lane::mass];
-    for (int d = 0; d < dim; ++d) {
-      if (s[lane::mass] > 0) node.solid[d] = s[lane::momentum + d] / s[lane::mass];
-      node.solid_force[d] = s[lane::force + d] + s[lane::mass] * state.gravity[d];
-    }
-  }
-  if constexpr (has_liquid<M>) {
-    const Record& l = state.nodes.liquid_in[i];
-    node.liquid_mass = l[lane::mass];
-    for (int d = 0; d < dim; ++d) {
-      node.liquid[d] = l[lane::mass] > 0 ? l[lane::momentum + d] / l[lane::mass] : node.solid[d];
-      node.liquid_force[d] = l[lane::force + d] + l[lane::mass] * state.gravity[d];
-    }
-  }
+  NodeMotion<State<M>::dim> node;
+  if constexpr (is_deformable<M>) load_solid(state.nodes.solid_in[i], state.gravity, node);
+  if constexpr (has_liquid<M>) load_liquid(state.nodes.liquid_in[i], state.gravity, node);
   return node;
 }
 

@@ -129,27 +129,29 @@ bool is_found(const Cell<Dim>& cell) noexcept {
   return cell.low > cell.high;
 }
 
-/// Pressures of the cells as the points read them, in the blocks that are sought; with `Open`, NaN for
-/// those that are found.
+/// Pressure of the water of a cell at the origin, p_c - rho_l g . x_c [Pa].
+template <class M>
+Real head_of(const State<M>& state, const Cell<State<M>::dim>& cell) noexcept {
+  Real head = cell.pressure;
+  for (int d = 0; d < State<M>::dim; ++d)
+    head -= state.water.density * state.gravity[d] * cell.centroid[d];
+  return head;
+}
+
+/// Pressures of the cells as the points read them, in marked blocks; with `Open`, NaN for those that are
+/// found.
 template <bool Open = false, class M>
-void find_heads(State<M>& state) {
-  constexpr int dim = State<M>::dim;
-  constexpr std::size_t cells = Block<dim>::cells;
+void find_heads(State<M>& state, const std::vector<char>& marks) {
   auto& nodes = state.nodes;
-  const Vec<dim> weight = state.water.density * state.gravity;
-  parallel_for(static_cast<std::size_t>(state.grid.slots()), state.options.threads,
-               [&](std::size_t s, int) {
-                 if (!nodes.retry[s]) return;
-                 for (std::size_t i = s * cells; i < (s + 1) * cells; ++i) {
-                   const std::int32_t owner = nodes.dof[i];
-                   nodes.head[i] = 0;
-                   if (owner < 0) continue;
-                   const auto& cell = nodes.cell[static_cast<std::size_t>(owner)];
-                   Real head = Open && is_found(cell) ? unset : cell.pressure;
-                   for (int d = 0; d < dim; ++d) head -= weight[d] * cell.centroid[d];
-                   nodes.head[i] = head;
-                 }
-               });
+  for_cells(state.grid, state.options.threads, marks,
+            [&](std::int32_t e, const Index<State<M>::dim>&, int, int) {
+              const auto i = static_cast<std::size_t>(e);
+              const std::int32_t owner = nodes.dof[i];
+              nodes.head[i] = 0;
+              if (owner < 0) return;
+              const auto& cell = nodes.cell[static_cast<std::size_t>(owner)];
+              nodes.head[i] = Open && is_found(cell) ? unset : head_of(state, cell);
+            });
 }
 
 /// Trial pressures at eight points: those of their cells and the weight of the water between.
@@ -162,13 +164,12 @@ VADOSE_INLINE Lanes pressures_at(const State<M>& state, const CellFinder<State<M
   return p;
 }
 
-/// Sums content and storage of the pore water at the trial pressures of the cells; `Stretched`: in
+/// Sums content and storage of the pore water at the pressures that find_heads() wrote; `Stretched`: in
 /// the volume after the step; `Open`: only of cells whose pressure is not found yet.
 template <bool Stretched = false, bool Open = false, class M>
 void sum_content(State<M>& state) {
   constexpr int dim = State<M>::dim;
   const Lanes over_modulus(1 / state.water.bulk_modulus);
-  find_heads<Open>(state);
   if constexpr (Stretched) spread_rates(state);
   for_blocks_adding(state.liquid, state.options.threads, [&](const BatchRange& range, int thread) {
     if (!state.nodes.retry[static_cast<std::size_t>(range.slot)]) return;
@@ -211,18 +212,30 @@ void sum_content(State<M>& state) {
   });
 }
 
-/// One safeguarded Newton step on the pressure of a cell; true when it is found.
+/// Water in excess, over the pores, from which a Newton step leaves nothing that counts [-].
+inline constexpr Real straight_excess = 1e-7;
+/// The same of a step that follows the curvature of the retention curve [-].
+inline constexpr Real curved_excess = 1e-5;
+
+/// How far the search for the pressure of a cell has come.
+enum class Search : unsigned char {
+  goes_on,
+  curved,  ///< found but for the curvature of the retention curve over the last step
+  over,
+};
+
+/// One safeguarded Newton step on the pressure of a cell.
 /// content, storage: sums at the present trial pressure; target: M / rho_l0.
 template <int Dim>
-bool improve_pressure(Cell<Dim>& cell, Real content, Real storage, Real target, Real floor) {
+Search improve_pressure(Cell<Dim>& cell, Real content, Real storage, Real target, Real floor) {
   const Real excess = content - target;
   cell.storage = storage;
   if (excess > 0)
     cell.high = min(cell.high, cell.pressure);
   else
     cell.low = max(cell.low, cell.pressure);
-  if (std::fabs(excess) <= 1e-14 * cell.pore_volume) return true;
-  if (cell.pressure <= floor && excess >= 0) return true;  // drier than any pressure sought
+  if (std::fabs(excess) <= 1e-14 * cell.pore_volume) return Search::over;
+  if (cell.pressure <= floor && excess >= 0) return Search::over;  // drier than any pressure sought
   Real next = cell.pressure - excess / max(storage, 1e-30 * cell.pore_volume);
   // The storage of water says nothing about the dry side, nor does that at one suction about that
   // at ten times as much: go there in growing steps.
@@ -233,15 +246,18 @@ bool improve_pressure(Cell<Dim>& cell, Real content, Real storage, Real target, 
   next = max(next, floor);
   if (!(next > cell.low && next < cell.high) && next != floor) {
     const Real middle = 0.5 * (cell.low + cell.high);
-    if (middle == cell.pressure) return true;
+    if (middle == cell.pressure) return Search::over;
     next = middle;
   }
+  const Real change = std::fabs(next - cell.pressure), size = std::fabs(cell.pressure);
   const bool same_side = (next < 0) == (cell.pressure < 0);
-  const bool close = std::fabs(excess) <= 1e-7 * cell.pore_volume &&
-                     std::fabs(next - cell.pressure) <= 1e-3 * std::fabs(cell.pressure) + 1;
-  const bool settled = std::fabs(next - cell.pressure) <= 1e-15 * std::fabs(cell.pressure);
+  const bool near = same_side && change <= 1e-3 * size + 1 &&
+                    std::fabs(excess) <= curved_excess * cell.pore_volume;
+  const bool close = near && std::fabs(excess) <= straight_excess * cell.pore_volume;
+  const bool settled = change <= 1e-15 * size;
   cell.pressure = next;
-  return (same_side && close) || settled;
+  if (close || settled) return Search::over;
+  return near && next < 0 && next > floor ? Search::curved : Search::goes_on;
 }
 
 /// Clears the sums of content of the blocks that are still sought.
@@ -267,30 +283,89 @@ Record member_sums(const CellView<M>& view, const AlignedVector<Record>& records
   return total;
 }
 
+/// Cells whose last step has yet to be corrected for the curvature of the retention curve.
+template <class M>
+struct CurvedSteps {
+  CellBatch<M> cells;
+  Real start[lane_count];  ///< pressures before it [Pa]
+};
+
+/// The search for the pressure of a cell is over.
+template <class M>
+void end_search(const State<M>& state, Cell<State<M>::dim>& cell) noexcept {
+  cell.low = 1, cell.high = 0;  // not touched again
+  finish_cell(state, cell);
+}
+
+/// Corrects the last steps of up to eight cells: the mean storage over a step, not that at its start, says
+/// how far it goes. (The curve at the mean porosity of a cell says how storage changes, not how large it
+/// is.) Where it bends by more than a little the search goes on.
+template <class M>
+void follow_curve(State<M>& state, CurvedSteps<M>& steps, std::size_t slot) {
+  using C = Cell<State<M>::dim>;
+  auto& batch = steps.cells;
+  if (batch.count == 0) return;
+  const auto& retention = state.soils[batch.material].material.retention;
+  const Lanes start = lanes_of([&](int l) { return steps.start[l < batch.count ? l : 0]; });
+  const Lanes end = batch.numbers([](const C& c) { return c.pressure; });
+  const Lanes porosity = batch.numbers([](const C& c) { return c.porosity; });
+  const Lanes over_modulus(1 / state.water.bulk_modulus);
+  const auto storage = [&](const Lanes& p) {
+    return swrc::water_content<Lanes>(retention, p, porosity, over_modulus).slope;
+  };
+  const Lanes before = storage(start), after = storage(end);
+  const Lanes next = start + (end - start) * (Lanes(2.0) * before / (before + after));
+  const Lanes growth = after / before;
+  const LaneMask follows = abs(after - before) <= Lanes(0.01) * before;
+  for (int l = 0; l < batch.count; ++l) {
+    if (follows[l]) {
+      batch.cell[l]->pressure = next[l];
+      batch.cell[l]->storage *= growth[l];
+      end_search(state, *batch.cell[l]);
+    } else {
+      state.nodes.retry[slot] = 1;
+    }
+  }
+  batch.count = 0;
+}
+
 /// One step of the search in every cell of a block; marks the block if one has to go on.
 template <class M>
 void improve_pressures(State<M>& state, int slot) {
   constexpr int dim = State<M>::dim;
   auto& nodes = state.nodes;
+  const auto block = static_cast<std::size_t>(slot);
+  CurvedSteps<M> steps;
   std::int32_t e = slot * Block<dim>::cells - 1;
   for_cube<dim>(0, Block<dim>::edge, [&](const Index<dim>& local) {
     const auto i = static_cast<std::size_t>(++e);
     auto& cell = nodes.cell[i];
     if (nodes.dof[i] != e || cell.kind != CellKind::soil || is_found(cell)) return;
     const Record sums = member_sums(CellView<M>(state, local, slot), nodes.content);
-    const Real target = cell.water / state.water.density;
-    const Real floor = state.soils[cell.material].pressure_floor;
-    if (state.frozen) cell.storage = sums[lane::storage];
-    cell.content = state.frozen ? sums[lane::content] : target;
-    const bool found = state.frozen || improve_pressure(cell, sums[lane::content],
-                                                        sums[lane::storage], target, floor);
-    if (found) {
-      cell.low = 1, cell.high = 0;  // not touched again
-      finish_cell(state, cell);
+    cell.content = cell.water / state.water.density;
+    if (state.frozen) {
+      cell.storage = sums[lane::storage];
+      cell.content = sums[lane::content];
+      end_search(state, cell);
+      return;
+    }
+    const Real start = cell.pressure;
+    const Search search = improve_pressure(cell, sums[lane::content], sums[lane::storage],
+                                           cell.content, state.soils[cell.material].pressure_floor);
+    if (search == Search::over) {
+      end_search(state, cell);
+    } else if (search == Search::goes_on) {
+      nodes.retry[block] = 1;
     } else {
-      nodes.retry[static_cast<std::size_t>(slot)] = 1;
+      auto& batch = steps.cells;
+      if (batch.count == lane_count || cell.material != batch.material)
+        follow_curve(state, steps, block);
+      steps.start[batch.count] = start;
+      batch.material = cell.material;
+      batch.cell[batch.count++] = &cell;
     }
   });
+  follow_curve(state, steps, block);
 }
 
 /// More than the head differs by over a cell and its slivers [Pa].
@@ -314,6 +389,7 @@ template <class M>
 void solve_unsaturated(State<M>& state) {
   constexpr int max_passes = 60;
   auto& nodes = state.nodes;
+  find_heads(state, nodes.near_sliver);  // others wrote theirs as they were gathered
   sum_content(state);
   for (int pass = 1;; ++pass) {
     nodes.sought = nodes.retry;
@@ -329,6 +405,7 @@ void solve_unsaturated(State<M>& state) {
     nodes.sought = nodes.retry;  // points beyond their block count in its neighbours too
     widen_marks(state.grid, nodes.sought, nodes.retry);
     clear_content(state);
+    find_heads<true>(state, nodes.retry);
     sum_content<false, true>(state);
   }
   for_pressure_cells(state, [&](Cell<State<M>::dim>& cell, std::int32_t, int) {
@@ -340,11 +417,16 @@ void solve_unsaturated(State<M>& state) {
 template <class M>
 void gather_cells(State<M>& state) {
   [[maybe_unused]] const Real span = head_span(state);
+  state.nodes.has_edge.assign(static_cast<std::size_t>(state.grid.slots()), 0);
   for_cells(state.grid, state.options.threads,
             [&](std::int32_t e, const Index<State<M>::dim>& local, int slot, int) {
-              auto& cell = state.nodes.cell[static_cast<std::size_t>(e)];
-              if (state.nodes.dof[static_cast<std::size_t>(e)] != e) {
-                if constexpr (is_unsaturated<M>) cell.closing = unset;
+              const auto i = static_cast<std::size_t>(e);
+              auto& cell = state.nodes.cell[i];
+              if (state.nodes.dof[i] != e) {
+                if constexpr (is_unsaturated<M>) {
+                  cell.closing = unset;
+                  state.nodes.head[i] = 0;
+                }
                 return;
               }
               gather_cell(state, CellView<M>(state, local, slot));
@@ -352,6 +434,7 @@ void gather_cells(State<M>& state) {
                 finish_cell(state, cell);
               else if constexpr (is_unsaturated<M>)
                 begin_search(state, span, cell);
+              if constexpr (is_unsaturated<M>) state.nodes.head[i] = head_of(state, cell);
             });
 }
 

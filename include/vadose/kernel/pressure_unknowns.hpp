@@ -56,20 +56,6 @@ void for_unknowns(State<M>& state, F&& f) {
       });
 }
 
-/// The block and local coordinates of an entry.
-template <class M>
-CellView<M> view_of(const State<M>& state, std::int32_t entry) noexcept {
-  constexpr int dim = State<M>::dim;
-  const int slot = entry / Block<dim>::cells;
-  int rest = entry % Block<dim>::cells;
-  Index<dim> local;
-  for (int d = 0; d < dim; ++d) {
-    local[d] = rest % Block<dim>::edge;
-    rest /= Block<dim>::edge;
-  }
-  return CellView<M>(state, local, slot);
-}
-
 /// Calls f(corner number, entry) for the cells around a node; f(., -1) outside the box.
 template <class M, class F>
 void for_cells_around(const CellView<M>& node, F&& f) {

@@ -169,7 +169,8 @@ struct LiquidPlace {
   CellFinder<dim> cells;
   Stencil<shape::Linear, dim> stencil;
 
-  LiquidPlace(const State<M>& state, std::size_t b, int block, const TileFrame<dim>& frame)
+  VADOSE_INLINE LiquidPlace(const State<M>& state, std::size_t b, int block,
+                            const TileFrame<dim>& frame) noexcept
       : batch(b), slot(block), is_free(state.liquid.group(b) == state.free_group()) {
     Lanes none[dim];
     load_positions(state.liquid, b, x);
@@ -391,7 +392,6 @@ void update_liquid(State<M>& state) {
   if constexpr (has_skeleton<M>) {
     update_liquid_velocities(state);
     find_mean_velocities(state);
-    find_changes(state);
     find_shares(state);
     carry_liquid(state);
   } else {
