@@ -4,6 +4,8 @@
 /// \file
 /// Steps 5 to 7, [Zhan] 3.4 (d), (e): forces, drag, walls and new velocities of every node.
 
+#include <optional>
+
 #include <vadose/kernel/inner_nodes.hpp>
 #include <vadose/kernel/recorded_node.hpp>
 
@@ -69,31 +71,45 @@ void advance_node(State<M>& state, const CellView<M>& view,
   store_node(state, i, sums, porosity, before, node);
 }
 
+/// Whether points brought mass to one of eight nodes that follow each other.
+template <class M>
+bool have_mass(const State<M>& state, std::size_t first) noexcept {
+  Real mass = 0;
+  for (std::size_t i = first; i < first + lane_count; ++i) {
+    if constexpr (is_deformable<M>) mass += state.nodes.solid_in[i][lane::mass];
+    if constexpr (has_liquid<M>) mass += state.nodes.liquid_in[i][lane::mass];
+  }
+  return !(mass <= 0);  // true for NaN, which is not to be hidden
+}
+
 /// The nodes of a block.
 template <bool Recorded, class M>
 void advance_block(State<M>& state, int slot, [[maybe_unused]] int thread) {
   constexpr int dim = State<M>::dim;
-  if constexpr (!has_liquid<M>) {
-    const SumsAround<dim> none;
-    for_cube<dim>(0, Block<dim>::edge, [&](const Index<dim>& local) {
-      advance_node<Recorded>(state, CellView<M>(state, local, slot), none);
-    });
-  } else {
-    constexpr bool together = is_deformable<M> && !Recorded;
-    const CellParts<M> parts(state, slot, thread);
-    const Real over_h = 1 / state.grid.cell_size();
-    SumsAround<dim> around[lane_count];
-    for (int first = 0; first < Block<dim>::cells; first += lane_count) {
+  using Sums = SumsAround<dim>;
+  const auto one_by_one = [&](int first, unsigned done, auto&& sums_of) {
+    for (int l = 0; l < lane_count; ++l)
+      if (!(done >> l & 1))
+        advance_node<Recorded>(state, CellView<M>(state, BlockGrid<dim>::local_at(first + l), slot),
+                               sums_of(l));
+  };
+  const Sums none;
+  [[maybe_unused]] std::optional<CellParts<M>> parts;  // blocks around the soil need none
+  for (int first = 0; first < Block<dim>::cells; first += lane_count) {
+    const auto entry = static_cast<std::size_t>(slot * Block<dim>::cells + first);
+    if (!has_liquid<M> || !have_mass(state, entry)) {
+      one_by_one(first, 0, [&](int) -> const Sums& { return none; });
+    } else if constexpr (has_liquid<M>) {
+      if (!parts) parts.emplace(state, slot, thread);
+      Sums around[lane_count];
       for (int l = 0; l < lane_count; ++l) {
         const int at = BlockGrid<dim>::tile_index(BlockGrid<dim>::local_at(first + l));
-        around[l] = SumsAround<dim>(parts, at, over_h);
+        around[l] = Sums(*parts, at, 1 / state.grid.cell_size());
       }
       unsigned done = 0;
-      if constexpr (together) done = advance_inner_nodes(state, slot, first, around);
-      for (int l = 0; l < lane_count; ++l)
-        if (!(done >> l & 1))
-          advance_node<Recorded>(
-              state, CellView<M>(state, BlockGrid<dim>::local_at(first + l), slot), around[l]);
+      if constexpr (is_deformable<M> && !Recorded)
+        done = advance_inner_nodes(state, slot, first, around);
+      one_by_one(first, done, [&](int l) -> const Sums& { return around[l]; });
     }
   }
 }
