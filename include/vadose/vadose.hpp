@@ -15,6 +15,7 @@
 #include <vadose/core/compensated_sum.hpp>
 #include <vadose/core/error.hpp>
 #include <vadose/core/field.hpp>
+#include <vadose/core/first_touch.hpp>
 #include <vadose/core/kinematics.hpp>
 #include <vadose/core/lanes.hpp>
 #include <vadose/core/lanes_math.hpp>

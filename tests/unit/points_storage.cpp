@@ -290,3 +290,17 @@ TEST_CASE("nodal sums have the same bits for one, two and three threads") {
   check_threads<2>({{33, 150}}, 3000, 68);
   check_threads<3>({{13, 14, 29}}, 4000, 69);
 }
+
+TEST_CASE("room made by threads is empty, large enough and stays where it is") {
+  for (const int threads : {1, 2, 3}) {
+    vadose::AlignedVector<vadose::Record> records(3);
+    vadose::reserve_by_threads(records, 5000, threads);
+    CHECK(records.empty());
+    CHECK(records.capacity() >= 5000);
+    const auto* place = records.data();
+    records.assign(5000, vadose::Record{});
+    vadose::reserve_by_threads(records, 4000, threads);
+    CHECK(records.empty());
+    CHECK(records.data() == place);
+  }
+}

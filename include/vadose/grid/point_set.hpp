@@ -12,6 +12,7 @@
 
 #include <vadose/core/aligned.hpp>
 #include <vadose/core/field.hpp>
+#include <vadose/core/first_touch.hpp>
 #include <vadose/core/lanes.hpp>
 #include <vadose/grid/block_grid.hpp>
 
@@ -163,11 +164,14 @@ class PointSet {
 
   /// Sorts by block and group, then by cell or, for bases of three nodes per axis, by the middle node,
   /// so that many batches share their nodes; new points join, removed ones vanish.
-  void sort(const BlockGrid<Dim>& grid, int groups, SortBy by = SortBy::cell) {
+  void sort(const BlockGrid<Dim>& grid, int groups, SortBy by = SortBy::cell, int threads = 1) {
     by_ = by;
     const std::vector<std::size_t> start = count(grid, groups);
-    AlignedVector<double> sorted(batch_total(start, groups, grid.slots()) *
-                                 static_cast<std::size_t>(stride));
+    const std::size_t size =
+        batch_total(start, groups, grid.slots()) * static_cast<std::size_t>(stride);
+    AlignedVector<double> sorted;
+    reserve_by_threads(sorted, size, threads);
+    sorted.resize(size);
     place(grid, groups, start, sorted);
     data_.swap(sorted);
     new_values_.clear();

@@ -326,25 +326,23 @@ class Solver {
   void resize_grid() {
     auto& n = state_.nodes;
     const std::size_t size = state_.grid.size();
-    const auto fresh = [size](auto& records) { records.assign(size, {}); };
-    if constexpr (is_deformable<M>) {
-      fresh(n.solid_in);
-      fresh(n.solid_out);
-    }
+    const auto fresh = [&](auto& values, std::size_t count, const auto& value) {
+      reserve_by_threads(values, count, state_.options.threads);
+      values.assign(count, value);
+    };
+    const auto records = [&](auto&... of_grid) { (fresh(of_grid, size, Record{}), ...); };
+    if constexpr (is_deformable<M>) records(n.solid_in, n.solid_out);
     if constexpr (has_liquid<M>) {
-      for (auto* r : {&n.liquid_in, &n.liquid_out, &n.mixture, &n.pore, &n.free, &n.content,
-                      &n.materials, &n.relative})
-        fresh(*r);
+      records(n.liquid_in, n.liquid_out, n.mixture, n.pore, n.free, n.content, n.materials,
+              n.relative);
       n.holds_free = false;
-      n.cell.assign(size, {});
-      n.dof.assign(size, -1);
-      n.face.assign(size * dim, {});
-      n.flux.assign(size * dim, 0);
-      n.donor.assign(size, {});
-      n.head.assign(size, 0);
-      n.soil.assign(size, 0);
-      n.rate.assign(size, unset);
-      n.filling.assign(size, 0);
+      fresh(n.cell, size, Cell<dim>{});
+      fresh(n.dof, size, -1);
+      fresh(n.face, size * dim, FaceFlux{});
+      fresh(n.donor, size, Donor{});
+      fresh(n.flux, size * dim, 0.0);
+      for (auto* values : {&n.head, &n.soil, &n.filling}) fresh(*values, size, 0.0);
+      fresh(n.rate, size, unset);
       n.near_sliver.assign(static_cast<std::size_t>(state_.grid.slots()), 1);
       n.retry.assign(static_cast<std::size_t>(state_.grid.slots()), 0);
     }
@@ -583,8 +581,8 @@ void Solver<M, Scheme>::sort() {
   const int groups = static_cast<int>(state_.soils.size()) + 1;
   // What comes from cells and goes to them is shared by points of one cell; without it only nodes count.
   constexpr SortBy by = !has_liquid<M> && M::Shape::support == 3 ? SortBy::node : SortBy::cell;
-  state_.solid.sort(state_.grid, groups, by);
-  if constexpr (has_liquid<M>) state_.liquid.sort(state_.grid, groups, by);
+  state_.solid.sort(state_.grid, groups, by, state_.options.threads);
+  if constexpr (has_liquid<M>) state_.liquid.sort(state_.grid, groups, by, state_.options.threads);
   find_films();
   state_.slack = 0;
 }
