@@ -45,7 +45,7 @@ runs = defaultdict(list)
 for path in sorted(folder.glob("*.json")):
     for run_name, list_ in runs_of(path).items():
         runs[run_name] += list_
-steps = {n: r for n, r in runs.items() if any("ns_nodes" in c for _, _, c in r)}
+steps = {n: r for n, r in runs.items() if any("points/s" in c for _, _, c in r)}
 races = {n: r for n, r in runs.items() if any("ratio" in c for _, _, c in r)}
 kernels = {n: r for n, r in runs.items() if n not in steps and n not in races}
 
@@ -90,6 +90,8 @@ def draw_passes():
             width = counters.get(f"ns_{key}", 0) if counters else 0
             axes.barh(row, width, left=left, color=colours[i % 10])
             left += width
+        if counters and left == 0:  # a scheme without these passes
+            axes.barh(row, counters["ns"], color="lightgray")
     axes.set_yticks(range(len(names)), names, fontsize=8)
     for i, label in enumerate(passes.values()):
         axes.barh(0, 0, color=colours[i % 10], label=label)

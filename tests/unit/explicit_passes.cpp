@@ -29,8 +29,6 @@ struct Coarse : vadose::UnsaturatedModel<K> {
 
 /// The explicit scheme; shows its state after each pass.
 struct Shown {
-  static constexpr const char* name = "explicit";
-
   template <class M>
   static inline std::function<void(vadose::State<M>&, Pass)> watch;
 

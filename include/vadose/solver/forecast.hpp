@@ -5,6 +5,7 @@
 /// How a run goes on: trials on a copy of it, spell by spell.
 
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <cmath>
 #include <vector>
@@ -39,7 +40,8 @@ class Forecast {
   /// Puts what was found into an estimate.
   void report(Estimate& e) const {
     e.dt = dt_;
-    e.limit = limit_;
+    e.limit = static_cast<StepLimit>(std::max_element(limited_.begin(), limited_.end()) -
+                                     limited_.begin());
     e.trend = power_;
     e.shortest_dt = floor_;
     e.steps = tried_steps_ + static_cast<std::int64_t>(std::ceil(rest_steps_ - 1e-9));
@@ -91,7 +93,7 @@ class Forecast {
       const StepReport step = copy_.step(end);
       failed_ = step.status != Status::ok;
       if (failed_) break;
-      if (!(dt_ > 0) && (copy_.time() < end || limit_ == StepLimit::none)) limit_ = step.limit;
+      if (!(dt_ > 0)) ++limited_[static_cast<std::size_t>(step.limit)];
       marks.push_back(now());
     }
   }
@@ -187,7 +189,9 @@ class Forecast {
   Real dt_ = 0, power_ = 0;
   Real last_dt_ = 0;     // mean step at the end of the last trial [s]
   bool is_wet_ = false;  // water is on the ground or has come
-  StepLimit limit_ = StepLimit::none;
+  /// Steps of the first trial by what limited them. (The last one alone may be any that the wall time of a
+  /// trial ends with.)
+  std::array<std::int64_t, static_cast<std::size_t>(last_step_limit) + 1> limited_{};
   std::int64_t tried_steps_ = 0;
   Real tried_wall_ = 0, rest_steps_ = 0, rest_wall_ = 0, rest_most_ = 0;
 };
