@@ -244,7 +244,8 @@ Search improve_pressure(Cell<Dim>& cell, Real content, Real storage, Real target
   else
     next = max(next, 10 * cell.pressure - 100);
   next = max(next, floor);
-  if (!(next > cell.low && next < cell.high) && next != floor) {
+  const bool leaves_bracket = !(next > cell.low && next < cell.high) && next != floor;
+  if (leaves_bracket) {
     const Real middle = 0.5 * (cell.low + cell.high);
     if (middle == cell.pressure) return Search::over;
     next = middle;
@@ -257,7 +258,8 @@ Search improve_pressure(Cell<Dim>& cell, Real content, Real storage, Real target
   const bool settled = change <= 1e-15 * size;
   cell.pressure = next;
   if (close || settled) return Search::over;
-  return near && next < 0 && next > floor ? Search::curved : Search::goes_on;
+  const bool follows_storage = !leaves_bracket && next < 0 && next > floor;
+  return near && follows_storage ? Search::curved : Search::goes_on;
 }
 
 /// Clears the sums of content of the blocks that are still sought.
