@@ -192,7 +192,8 @@ struct GridState {
   std::vector<char> retry;        ///< blocks whose pressures are not found yet, one per slot
   std::vector<char> sought;       ///< scratch: marks of blocks before they are widened
   std::vector<char> near_sliver;  ///< blocks that hold a sliver or lie beside one, one per slot
-  std::vector<char> has_edge;     ///< blocks with a pressure cell at air or at a wall, one per slot
+  /// Blocks with a pressure cell at air, at a wall or with a sliver, one per slot.
+  std::vector<char> has_edge;
   /// Pressure of the water of a cell at the origin, p_c - rho_l g . x_c, by the cell whose pressure it
   /// uses; one per cell [Pa].
   std::vector<Real> head;

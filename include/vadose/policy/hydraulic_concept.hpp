@@ -86,7 +86,7 @@ concept HasConductivity = requires(const C& law, Real x) {
 template <class C>
 concept ConductivityLaw = HasConductivity<C> && HasValidate<C>;
 
-/// k(Se, n) = saturated(n) relative(Se).
+/// k(Se, n) = saturated(n) relative(Se), relative(1) = 1.
 template <class C>
 concept FactorisingConductivity = ConductivityLaw<C> && requires(const C& law, Real x) {
   { law.saturated(x) } -> std::convertible_to<Real>;
