@@ -300,11 +300,13 @@ void set_velocities(const T (&before)[Dim], const T (&after)[Dim], Rows& out) no
 template <class M>
 void store_velocities(State<M>& state, std::size_t i, const NodeMotion<State<M>::dim>& before,
                       const NodeMotion<State<M>::dim>& after) {
-  Record solid, liquid;
-  set_velocities(before.solid, after.solid, solid);
-  set_velocities(before.liquid, after.liquid, liquid);
-  if constexpr (is_deformable<M>) state.nodes.solid_out[i] = solid;
-  if constexpr (has_liquid<M>) state.nodes.liquid_out[i] = liquid;
+  const auto store = [&](AlignedVector<Record>& records, const auto& from, const auto& to) {
+    Record out;
+    set_velocities(from, to, out);
+    records[i] = out;
+  };
+  if constexpr (is_deformable<M>) store(state.nodes.solid_out, before.solid, after.solid);
+  if constexpr (has_liquid<M>) store(state.nodes.liquid_out, before.liquid, after.liquid);
 }
 
 /// Head gradient that drives the flow through the soil at a node along an axis, per n (v^l - v^s):
